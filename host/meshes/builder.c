@@ -13,6 +13,8 @@
 #include <string.h>
 
 enum { FIRST_CAPACITY = 64 };
+/* Of all polygons together. */
+#define CORNERS_MAX ((size_t)4 * BP_MESH_COUNT_MAX)
 
 void mesh_note(BpMesh *mesh, const char *format, ...) {
     char text[256];
@@ -114,6 +116,9 @@ BpStatus mesh_color_polygon(MeshBuilder *builder, const double color[3], bool wi
 }
 
 BpStatus mesh_add_corner(MeshBuilder *builder, uint32_t vertex, BpError *err) {
+    if (builder->corner_count == CORNERS_MAX)
+        return input_fail(builder->input, false, err, "found more than %zu corners of faces, expected fewer",
+                          CORNERS_MAX);
     BP_TRY(MAKE_ROOM(builder, builder->corners, builder->corner_capacity, builder->corner_count, "corners",
                      err));
     builder->corners[builder->corner_count++] = vertex;
@@ -128,9 +133,6 @@ BpStatus mesh_end_polygon(MeshBuilder *builder, uint32_t material, bool with_lin
     BP_TRY(MAKE_ROOM(builder, builder->polygons, builder->polygon_capacity, builder->polygon_count, "faces",
                      err));
     const size_t corners = builder->corner_count - builder->polygon_begin;
-    if (corners > UINT32_MAX)
-        return input_fail(builder->input, with_line, err, "found a face of %zu corners, expected fewer",
-                          corners);
     builder->polygons[builder->polygon_count++] = (MeshPolygon){.corner_count = (uint32_t)corners,
                                                                 .material = material,
                                                                 .line = !with_line          ? 0

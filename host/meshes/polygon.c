@@ -220,6 +220,25 @@ static void unlink_corner(Clip *clip, uint32_t n) {
     push(clip, corner->next);
 }
 
+/* Whether the outline turns back on itself at a corner, or stands still. */
+static bool is_spike(const Clip *clip, uint32_t n) {
+    const Corner *const corner = &clip->corners[n];
+    const double *const a = clip->corners[corner->previous].at, *const c = clip->corners[corner->next].at;
+    if (corner->turn != 0) return false;
+    return is_same_place(a, corner->at) || is_same_place(c, corner->at) ||
+           is_below(a, corner->at) == is_below(c, corner->at);
+}
+
+/* Cuts off the spikes at a corner and at what becomes of it: they have no area, and what they leave is looked
+ * at again. */
+static void drop_spikes(Clip *clip, uint32_t n) {
+    while (clip->left > 3 && is_spike(clip, n)) {
+        const uint32_t previous = clip->corners[n].previous, next = clip->corners[n].next;
+        unlink_corner(clip, n);
+        n = is_spike(clip, previous) ? previous : next;
+    }
+}
+
 /* The next corner of the queue that is an ear; UINT32_MAX: none. */
 static uint32_t take_ear(Clip *clip) {
     while (clip->queued > 0) {
@@ -233,34 +252,37 @@ static uint32_t take_ear(Clip *clip) {
     return UINT32_MAX;
 }
 
+/* Asks all corners that are left again whether they are ears. */
+static void push_all(Clip *clip, size_t count) {
+    for (uint32_t n = 0; n < count; n++)
+        if (!clip->corners[n].is_gone) push(clip, n);
+}
+
 /* Cuts ears off until a triangle is left. False: there is a place where none can be cut. The corners of a
  * triangle stand in the cutter as numbers of corners. */
 static bool clip_ears(Clip *clip, size_t count) {
     const Corner *const corners = clip->corners;
-    bool is_second = false; /* the queue is empty for the second time without an ear */
+    bool is_second = false; /* no ear was found since all corners were asked */
     for (uint32_t n = 0; n < count; n++) {
         clip->corners[n].turn = 1;
         set_turn(clip, n);
-        push(clip, n);
     }
-    for (uint32_t at = 0; clip->left > 3;) {
-        uint32_t n = take_ear(clip);
-        if (clip->work > clip->work_max) return false;
-        if (n != UINT32_MAX) {
-            put(clip->cutter, corners[n].previous, n, corners[n].next);
-            is_second = false;
-        } else if (!is_second) {
-            is_second = true;
-            while (corners[at].is_gone) at++;
-            n = at;
-            do push(clip, n);
-            while ((n = corners[n].next) != at);
+    for (uint32_t n = 0; n < count; n++)
+        if (!corners[n].is_gone) drop_spikes(clip, n);
+    push_all(clip, count);
+    while (clip->left > 3) {
+        const uint32_t n = take_ear(clip);
+        if (clip->work > clip->work_max || (n == UINT32_MAX && is_second)) return false;
+        is_second = n == UINT32_MAX;
+        if (is_second) {
+            push_all(clip, count);
             continue;
-        } else { /* what turns back on itself has no area */
-            for (n = 0; n < count && (corners[n].is_gone || corners[n].turn != 0);) n++;
-            if (n == count) return false;
         }
+        const uint32_t previous = corners[n].previous, next = corners[n].next;
+        put(clip->cutter, previous, n, next);
         unlink_corner(clip, n);
+        drop_spikes(clip, previous);
+        if (!corners[next].is_gone) drop_spikes(clip, next);
     }
     uint32_t n = 0;
     while (corners[n].is_gone) n++;

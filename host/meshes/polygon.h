@@ -36,9 +36,9 @@ bool polygon_is_flat(const double a[3], const double b[3], const double c[3]);
 
 /* Cuts the polygon with the corners positions[vertices[0]], ..., in the plane of two axes that is nearest to
  * its own. A polygon of n corners gets n - 2 triangles; fewer where some would have no area, as with corners
- * that are the same vertex, or all on one line. Corners on the line between their neighbours are kept as
- * corners of triangles, so that no edge of a neighbour ends amid an edge. Holes may be joined to the outline
- * by an edge that is walked both ways. */
+ * that are the same vertex, or where the outline turns back on itself. Corners on the line between their
+ * neighbours are kept as corners of triangles, so that no edge of a neighbour ends amid an edge. Holes may be
+ * joined to the outline by an edge that is walked both ways. */
 PolygonResult polygon_cut(PolygonCutter *cutter, const double (*positions)[3], const uint32_t *vertices,
                           size_t count);
 

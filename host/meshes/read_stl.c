@@ -104,16 +104,26 @@ static BpStatus read_binary(Stl *stl, BpError *err) {
 
 /* ---- text --------------------------------------------------------------------------------------------- */
 
+static bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r';
+}
+
+static char *skip_blanks(char *at) {
+    while (is_blank(*at)) at++;
+    return at;
+}
+
 /* The next word, on this line or a later one; NULL at the end of the file. */
 static BpStatus next_word(Stl *stl, char **word, BpError *err) {
-    char *at = stl->cursor + strspn(stl->cursor, " \t\r");
-    if (*at == '\0') {
-        BP_TRY(input_full_line(stl->input, &at, err));
-        *word = NULL;
+    char *at = skip_blanks(stl->cursor);
+    *word = NULL;
+    while (*at == '\0') {
+        BP_TRY(input_line(stl->input, &at, err));
         if (at == NULL) return BP_OK;
-        at += strspn(at, " \t\r");
+        at = skip_blanks(at);
     }
-    char *const end = at + strcspn(at, " \t\r");
+    char *end = at;
+    while (*end != '\0' && !is_blank(*end)) end++;
     stl->cursor = *end == '\0' ? end : end + 1;
     *end = '\0';
     *word = at;

@@ -1,0 +1,541 @@
+"""Files of meshes: values by hand and by closed forms, beside trimesh, and against hostile files.
+
+Run as: python3 test_mesh_files.py mesh_summary [Class ...]
+BALLPARK_READERS_PYTHON names the Python that has trimesh and NumPy, where it is not this one; tests that compare with it are
+skipped where it is missing.
+"""
+import gzip
+import json
+import math
+import os
+import resource
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import samples
+from samples import CORNERS, L_SHAPE, SIDES, TRIANGLES, obj, off, ply, stl_binary, stl_text
+
+READERS_PYTHON = os.environ.get("BALLPARK_READERS_PYTHON", sys.executable)
+MODELS = "/usr/share/assimp/models"
+OPEN, SHARED, TURNED = 1, 2, 3
+MEMORY = 1 << 28  # bytes that a hostile file may make the program ask for, which sanitizers cannot be held to
+SANITIZED = "asan" in os.path.abspath(sys.argv[1])
+TORUS_U, TORUS_V = 24, 16
+
+
+def linear(encoded):
+    """IEC 61966-2-1."""
+    return encoded / 12.92 if encoded <= 0.04045 else ((encoded + 0.055) / 1.055) ** 2.4
+
+
+def torus():
+    """Vertices and quads, wound outwards."""
+    at = [(3 + math.cos(v), math.sin(v)) for v in (2 * math.pi * j / TORUS_V for j in range(TORUS_V))]
+    vertices = [(r * math.cos(u), r * math.sin(u), z) for u in (2 * math.pi * i / TORUS_U for i in range(TORUS_U)) for r, z in at]
+    name = lambda i, j: i % TORUS_U * TORUS_V + j % TORUS_V
+    return vertices, [(name(i, j), name(i + 1, j), name(i + 1, j + 1), name(i, j + 1)) for i in range(TORUS_U) for j in range(TORUS_V)]
+
+
+def area_of(vertices, faces):
+    area = 0
+    for a, b, c in faces:
+        p, q, r = vertices[a], vertices[b], vertices[c]
+        s, t = [q[i] - p[i] for i in range(3)], [r[i] - p[i] for i in range(3)]
+        area += math.hypot(s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]) / 2
+    return area
+
+
+def volume_of(vertices, faces):
+    volume = 0
+    for a, b, c in faces:
+        p, q, r = vertices[a], vertices[b], vertices[c]
+        volume += (p[0] * (q[1] * r[2] - q[2] * r[1]) - p[1] * (q[0] * r[2] - q[2] * r[0]) + p[2] * (q[0] * r[1] - q[1] * r[0])) / 6
+    return volume
+
+
+class MeshTest(unittest.TestCase):
+    maxDiff = None
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp(prefix="ballpark-meshes-")
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def write(self, name, content):
+        path = os.path.join(self.folder, name)
+        with open(path, "wb") as file:
+            file.write(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def ask_all(self, *arguments):
+        """What is read from files, in little memory."""
+        limit = lambda: SANITIZED or resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        result = subprocess.run([sys.argv[1], *arguments], capture_output=True, check=False, timeout=120, preexec_fn=limit)
+        self.assertEqual(result.returncode, 0, result.stderr.decode(errors="replace")[-2000:])
+        return [json.loads(line) for line in result.stdout.decode(errors="surrogateescape").splitlines()]
+
+    def ask(self, *arguments):
+        found, = self.ask_all(*arguments)
+        return found
+
+    def of(self, name, content):
+        """All that is read from a file with that content."""
+        found = self.ask("--whole", self.write(name, content))
+        self.assertNotIn("error", found, f"{name}: {content[:300]!r}")
+        self.assertTrue(found["mesh"])
+        return found
+
+    def refuse(self, name, content, *says, line=None, mesh=None):
+        found = self.ask(self.write(name, content))
+        self.assertIn("error", found, f"{name}: {content[:300]!r}")
+        for text in says:
+            self.assertIn(text, found["error"])
+        if line is not None:
+            self.assertEqual(found["line"], line, found["error"])
+        if mesh is not None:
+            self.assertEqual(found["mesh"], mesh)
+        return found["error"]
+
+    def near(self, one, other, tolerance=1e-6):
+        self.assertEqual(len(one), len(other))
+        for a, b in zip(one, other):
+            if isinstance(a, (list, tuple)):
+                self.near(a, b, tolerance)
+            else:
+                self.assertLessEqual(abs(a - b), tolerance, (one, other))
+
+    def is_cube(self, found, vertices=CORNERS):
+        self.assertEqual(found["positions"], [list(map(float, v)) for v in vertices])
+        self.assertEqual([tuple(f) for f in found["faces"]], TRIANGLES)
+        self.assertEqual(found["edge"]["fault"], 0)
+        self.assertAlmostEqual(found["area"], 6, 12)
+
+
+class Ply(MeshTest):
+    def test_forms(self):
+        """Quads are triangles, text is binary, and every integer type of lists reads alike."""
+        for form in ("ascii", "little", "big"):
+            self.is_cube(self.of("a.ply", ply(form)))
+            self.is_cube(self.of("a.ply", ply(form, faces=TRIANGLES, name="vertex_index")))
+            self.is_cube(self.of("a.ply", ply(form, face_first=True, place="double")))
+            self.is_cube(self.of("a.ply.gz", gzip.compress(ply(form))))
+            for count in ("char", "uchar", "short", "ushort", "int", "uint"):
+                for index in ("char", "uchar", "short", "ushort", "int", "uint"):
+                    self.is_cube(self.of("a.ply", ply(form, count=count, index=index)))
+
+    def test_what_means_nothing(self):
+        for form in ("ascii", "little", "big"):
+            for first in (False, True):
+                self.is_cube(self.of("a.ply", ply(form, extra=True, face_first=first, vertex_colors=samples.COLORS)))
+
+    def test_colors(self):
+        colors = [(255, 0, 0), (0, 128, 255), (1, 2, 3)]
+        for form in ("ascii", "little", "big"):
+            for kind, scale in (("uchar", 1), ("ushort", 257), ("float", 1 / 255)):
+                given = [tuple(type(scale)(c * scale) for c in color) for color in colors]
+                decode = (lambda c: c / 255) if kind == "float" else (lambda c: linear(c / 255))
+                want = [[decode(c) for c in color] for color in colors]
+                found = self.of("a.ply", ply(form, CORNERS[:3], [(0, 1, 2)], vertex_colors=given, color=kind))
+                self.near(found["vertex_colors"], want)
+                self.assertNotIn("face_colors", found)
+                found = self.of("a.ply", ply(form, CORNERS, SIDES[:3], face_colors=given, color=kind))
+                self.near(found["face_colors"], [c for c in want for _ in range(2)])
+                self.assertNotIn("vertex_colors", found)
+
+    def test_windows(self):
+        text = ply("ascii")
+        self.is_cube(self.of("a.ply", text.replace(b"\n", b"\r\n")))
+        self.is_cube(self.of("a.ply", b"\xef\xbb\xbf" + text.rstrip()))
+        self.refuse("a.ply", text.decode().encode("utf-16"), "UTF-16", "iconv", mesh=False)
+
+    def test_points(self):
+        """Without faces it is a file of points, as ever."""
+        self.refuse("a.ply", ply("ascii", faces=[]), "no faces", "particles", mesh=False)
+
+    def test_hostile(self):
+        text = ply("ascii")
+        self.refuse("a.ply", text.replace(b"\n4 0 1 3 2", b"\n4 0 1 8 2"), "face 0", "found vertex 8, expected one of 8", line=19)
+        self.refuse("a.ply", text.replace(b"\n4 0 1 3 2", b"\n4 0 1 -1 2"), "found vertex -1", line=19)
+        self.refuse("a.ply", text.replace(b"\n4 0 1 3 2", b"\n4 0 1 2.5 2"), "found vertex 2.5", line=19)
+        self.refuse("a.ply", text.replace(b"\n4 0 1 3 2", b"\n4 0 1 3"), "face 0", line=19)
+        self.refuse("a.ply", text.replace(b"\n4 0 1 3 2", b"\n4 0 1 3 2 7"), "found more than", line=19)
+        self.refuse("a.ply", text.replace(b"\n4 0 1 3 2", b"\n-4 0 1 3 2"), "length of a list", line=19)
+        self.refuse("a.ply", text.replace(b"\n0 0 1", b"\n0 nan 1"), "vertex 1", "no number for y", line=12)
+        self.refuse("a.ply", text.replace(b"\n0 0 1", b"\n0 inf 1"), "vertex 1", "for y", line=12)
+        self.refuse("a.ply", text.replace(b"face 6", b"face 7"), "end of the file", line=25)
+        self.refuse("a.ply", text.replace(b"face 6", b"face 5"), "another line", line=24)
+        self.refuse("a.ply", text.replace(b"vertex_indices", b"corners"), "vertex_indices")
+        self.refuse("a.ply", ply("ascii", index="float"), "integer type", line=9)
+        self.refuse("a.ply", ply("little")[:-1], "truncated")
+        self.refuse("a.ply", ply("little") + b"x", "1 byte after")
+        self.refuse("a.ply", ply("big", faces=[(0, 1, 8)]), "face 0", "found vertex 8")
+        self.refuse("a.ply", ply("little", [(0, 0, 0), (1, 0, 0), (0, math.nan, 0)], [(0, 1, 2)]), "vertex 2", "no number for y")
+        self.refuse("a.ply.gz", gzip.compress(ply("little"))[:-30], "cut off", mesh=True)
+
+
+class Obj(MeshTest):
+    def test_forms(self):
+        for corner in ("{0}", "{0}/9", "{0}//1", "{0}/9/1", "{0}/"):
+            self.is_cube(self.of("a.obj", obj(corner=corner)))
+        self.is_cube(self.of("a.obj", obj(base=-8)))
+        self.is_cube(self.of("a.obj.gz", gzip.compress(obj(corner="{0}/-1/-1", base=-8).encode())))
+        self.is_cube(self.of("a.obj", "# cube\r\no x\r\ng a b\r\ns off\r\n" + obj().replace("\n", " # end\r\n").rstrip()))
+        self.is_cube(self.of("a.obj", b"\xef\xbb\xbf" + obj().replace("f ", "f \\\n").encode()))
+        faces_first = obj().split("f ", 1)
+        self.is_cube(self.of("a.obj", "f " + faces_first[1] + faces_first[0]))
+
+    def test_negative_indices(self):
+        """Counted from the last vertex before the face, not of the file."""
+        first = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n"
+        found = self.of("a.obj", first + first.replace(" 0\n", " 5\n") + "f -6 -5 -1\nf 1 -5 6\n")
+        self.assertEqual(found["faces"], [[0, 1, 2], [3, 4, 5], [0, 1, 5], [0, 1, 5]])
+        self.refuse("a.obj", first.replace("-3", "-4"), "found vertex -4", "-1 to -3", line=4)
+        self.refuse("a.obj", first.replace("-3", "0"), "found vertex 0", "1 to 3", line=4)
+        self.refuse("a.obj", first.replace("-3", "4"), "face 1 (from 1)", "has vertex 4, expected one of 3", line=4)
+
+    def test_vertices(self):
+        found = self.of("a.obj", "v 1 2 3 1\nv 1e1 -2.5E-1 +3. 1\n\tv  .5\t0 0 2 \nf 1 2 3\n")
+        self.assertEqual(found["positions"], [[1, 2, 3], [10, -0.25, 3], [0.5, 0, 0]])
+        self.assertIn("weights", found["notes"])
+        found = self.of("a.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nf 1 2 3\n")
+        self.near(found["vertex_colors"], [[1, 0, 0], [0, 0.5, 0], [0, 0, 1]])
+        found = self.of("a.obj", "v 0 0 0 255 0 0\nv 1 0 0 0 128 0\nv 0 1 0 0 0 9\nf 1 2 3\n")
+        self.near(found["vertex_colors"], [[1, 0, 0], [0, linear(128 / 255), 0], [0, 0, linear(9 / 255)]])
+        found = self.of("a.obj", "v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0 0 0 1\nf 1 2 3\n")
+        self.assertNotIn("vertex_colors", found)
+        self.assertIn("1 of 3 vertices have none", found["notes"])
+        self.refuse("a.obj", "v 1 2\n", "found 2 numbers behind v", line=1)
+        self.refuse("a.obj", "v 1 2 x\n", "\"x\"", line=1)
+        self.refuse("a.obj", "v 1 nan 0\nf 1 1 1\n", "vertex 1 (from 1)", "no number for y", line=1)
+        self.refuse("a.obj", "\nv 1 1e200 0\nf 1 1 1\n", "found 1e+200 for y", "1e100", line=2)
+
+    def test_materials(self):
+        self.write("m", samples.MTL)
+        found = self.of("a.obj", samples.OBJ_WITH_MTL)
+        self.assertEqual(found["materials"], [
+            {"name": "red", "faces": 4, "kd": [0.8, 0.1, 0.1], "ke": [0, 0, 0], "ni": 1.5, "d": 0.5},
+            {"name": "lamp light", "faces": 2, "kd": [0, 0, 0], "ke": [4, 4, 3], "d": 0.75}])
+        self.assertEqual(found["face_material"], [0, 0, 0, 0, 1, 1])
+        self.assertEqual([tuple(f) for f in found["faces"]], TRIANGLES[:4] + [(0, 4, 5), (0, 5, 1)])
+        for note in ("textures left out", "1 normal left out", "1 texture coordinate left out", "1 line left out", "1 point left out"):
+            self.assertIn(note, found["notes"])
+        found = self.of("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl a\nf 1 2 3\nusemtl b\nusemtl\nf 1 2 3\n")
+        self.assertEqual(found["face_material"], [-1, 0, -1])
+        self.assertEqual(found["materials"], [{"name": "a", "faces": 1}, {"name": "b", "faces": 0}])
+
+    def test_libraries(self):
+        """Found by names with blanks, of several, in folders of other machines; a missing one is a note."""
+        triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+        self.write("my m.mtl", "newmtl a\nKd 1 1 1\n")
+        self.write("n", "newmtl b\nNi 2\nNi 0\nKd spectral x\n")
+        self.assertEqual([m["name"] for m in self.of("a.obj", "mtllib my m.mtl\n" + triangle)["materials"]], ["a"])
+        self.assertEqual([m["name"] for m in self.of("a.obj", "mtllib C:\\x\\my m.mtl\n" + triangle)["materials"]], ["a"])
+        found = self.of("a.obj", "mtllib missing n\nmtllib n\n" + triangle)
+        self.assertEqual(found["materials"], [{"name": "b", "faces": 0, "ni": 2}])
+        self.assertIn("2 lines of n left out, from line 3 on", found["notes"])
+        self.assertIn("no file gone.mtl", self.of("a.obj", "mtllib gone.mtl\n" + triangle)["notes"])
+        self.assertIn("no file .", self.of("a.obj", "mtllib .\n" + triangle)["notes"])
+
+    def test_refused(self):
+        for word in ("cstype rat bspline", "curv2 1 2", "surf 0 1 0 1 1 2", "deg 3"):
+            self.refuse("a.obj", "v 0 0 0\n" + word + "\n", word.split()[0], "free-form", line=2)
+        self.refuse("a.obj", "v 0 0 0\np 1\n", "no faces")
+        self.refuse("a.obj", "", "no faces")
+        self.refuse("a.obj", obj().encode("utf-16"), "UTF-16")
+        self.refuse("a.obj", b"v 0 0 0\0\n", "value 0", line=1)
+        self.refuse("a.obj", obj() + "f 1 2 3x\n", "3x", line=15)
+        self.refuse("a.obj", obj() + "f 1 2 99999999999999999999\n", line=15)
+        self.refuse("a.obj", obj() + "f 1 2 4294967297\n", "4294967297", line=15)
+        self.assertIn("1 unknown statement left out, from line 1 on", self.of("a.obj", "xyz 1\n" + obj())["notes"])
+
+    def test_no_area(self):
+        found = self.of("a.obj", obj() + "f 1 2 2\nf 1 1 1\nf 1 2\nf 1 1 2 3\nv 2 0 0\nv 3 0 0\nv 4 0 0\nf 9 10 11\n")
+        self.assertEqual((found["triangles"], found["dropped"], found["polygons"]), (13, 5, 7))
+        self.assertEqual(found["faces"][-1], [2, 0, 1])
+        self.refuse("a.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n", "no triangle with an area")
+
+
+class Stl(MeshTest):
+    def places(self, found):
+        return [tuple(tuple(found["positions"][v]) for v in face) for face in found["faces"]]
+
+    def is_welded_cube(self, found):
+        self.assertEqual(self.places(found), [tuple(tuple(map(float, CORNERS[v])) for v in t) for t in TRIANGLES])
+        self.assertEqual((found["vertices"], found["welded"], found["edge"]["fault"]), (8, 28, 0))
+
+    def test_forms(self):
+        self.is_welded_cube(self.of("a.stl", stl_text()))
+        self.is_welded_cube(self.of("a.stl", stl_binary()))
+        self.is_welded_cube(self.of("a.STL", stl_binary(header=b"solid by a program that writes binary files")))
+        self.is_welded_cube(self.of("a.stl.gz", gzip.compress(stl_binary(header=b"solid"))))
+        self.is_welded_cube(self.of("a.stl.gz", gzip.compress(stl_text().encode())))
+        self.is_welded_cube(self.of("a.stl", stl_text().upper().replace("\n", "\r\n").rstrip()))
+        self.is_welded_cube(self.of("a.stl", "solid facet endsolid\n" + " ".join(stl_text().split("\n", 1)[1].rsplit("endsolid", 1)[0].split())))
+        self.is_welded_cube(self.of("binary", stl_binary()))
+        self.is_welded_cube(self.of("text", stl_text()))
+        half = stl_text(triangles=TRIANGLES[:5]), stl_text(triangles=TRIANGLES[5:], name="")
+        self.is_welded_cube(self.of("a.stl", "solid none\nendsolid none\n" + "".join(half)))
+
+    def test_zeros(self):
+        """0 and -0 are one place."""
+        corners = [(-0.0 if c == 0 and i % 2 else float(c), y, z) for i, (c, y, z) in enumerate(CORNERS)]
+        mixed = stl_binary(corners, TRIANGLES[:6]) [84:] + stl_binary(CORNERS, TRIANGLES[6:])[84:]
+        found = self.of("a.stl", bytes(80) + struct.pack("<I", 12) + mixed)
+        self.assertEqual((found["vertices"], found["edge"]["fault"]), (8, 0))
+
+    def test_attributes(self):
+        self.assertIn("attribute bytes of 12 triangles left out", self.of("a.stl", stl_binary(attribute=1))["notes"])
+
+    def test_degenerate(self):
+        found = self.of("a.stl", stl_text(triangles=TRIANGLES + [(0, 1, 1), (0, 0, 0)]))
+        self.assertEqual((found["triangles"], found["dropped"]), (12, 2))
+
+    def test_hostile(self):
+        self.refuse("a.stl", stl_binary()[:-1], "683 bytes, expected 684")
+        self.refuse("a.stl", stl_binary() + b"xx", "686 bytes, expected 684")
+        self.refuse("a.stl", stl_binary(count=10 ** 9), "expected 50000000084")
+        self.refuse("a.stl", stl_binary(header=b"solid")[:-1], "683 bytes, expected 684")
+        self.refuse("a.stl", stl_binary(count=0, triangles=[]), "no triangle")
+        self.refuse("a.stl", b"", "0 bytes")
+        self.refuse("a.stl", stl_text().encode("utf-16"), "UTF-16")
+        text = stl_text()
+        self.refuse("a.stl", text.replace("vertex 0 0 1", "vertex 0 nan 1", 1), line=5)
+        self.refuse("a.stl", text.replace("vertex 0 0 1", "vertex 0 1", 1), "three numbers", line=6)
+        self.refuse("a.stl", text.replace("endloop", "end", 1), "vertex or endloop", line=7)
+        self.refuse("a.stl", text[:300], "the file is truncated")
+        self.refuse("a.stl", text + "more", "solid", line=len(text.splitlines()) + 1)
+        self.refuse("a.stl", stl_binary([(0, 0, 0), (1, 0, 0), (math.inf, 0, 0)], [(0, 1, 2)]), "vertex 2")
+        self.assertIn("no end", self.of("a.stl", text.rsplit("endsolid", 1)[0])["notes"])
+
+
+class Off(MeshTest):
+    def test_forms(self):
+        self.is_cube(self.of("a.off", off()))
+        self.is_cube(self.of("cube", off(faces=TRIANGLES)))
+        self.is_cube(self.of("a.off", off(counts=" 8 6 12\n")))
+        self.is_cube(self.of("a.off", off(counts="\n# comment\n\n8\n6\n12\n")))
+        self.is_cube(self.of("a.off", off(counts=" # x\n8 6\n")))
+        self.is_cube(self.of("a.off", off(keyword="", counts="8 6 0\n")))
+        self.is_cube(self.of("a.off.gz", gzip.compress(off().encode())))
+        self.is_cube(self.of("a.off", b"\xef\xbb\xbf" + off().replace("\n", "  # x\r\n").encode().rstrip()))
+        self.is_cube(self.of("a.off", off(keyword="NOFF", behind_vertex=" 0 0 1")))
+        self.is_cube(self.of("a.off", off(keyword="STOFF", behind_vertex=" 0.5 0.25")))
+        self.is_cube(self.of("a.off", off(behind_face=" 7")))
+
+    def test_colors(self):
+        for behind in (" 255 0 51 255", " 255 0 51"):
+            found = self.of("a.off", off(keyword="COFF", behind_vertex=behind))
+            self.is_cube(found)
+            self.near(found["vertex_colors"], [[1, 0, linear(0.2)]] * 8)
+        found = self.of("a.off", off(keyword="STCNOFF", behind_vertex=" 0 0 1 1 0 0.2 1 0.5 0.75"))
+        self.near(found["vertex_colors"], [[1, 0, 0.2]] * 8)
+        for behind in (" 0.5 0 1", " 0.5 0 1 0.5"):
+            self.near(self.of("a.off", off(behind_face=behind))["face_colors"], [[0.5, 0, 1]] * 12)
+        found = self.of("a.off", off() .replace("4 0 1 3 2", "4 0 1 3 2 255 0 0"))
+        self.assertNotIn("face_colors", found)
+        self.assertIn("5 of 6 faces have none", found["notes"])
+
+    def test_hostile(self):
+        text = off()
+        self.refuse("a.off", "OFF BINARY\n", "BINARY", "text only", line=1)
+        self.refuse("a.off", "4OFF\n8 6 0\n", "4OFF", line=1)
+        self.refuse("a.off", "nOFF\n3\n8 6 0\n", "nOFF", line=1)
+        self.refuse("a.off", text.replace("4 0 1 3 2", "4 0 1 8 2"), "face 0", "4 vertices of 8", line=11)
+        self.refuse("a.off", text.replace("4 0 1 3 2", "4 0 1 -3 2"), "face 0", line=11)
+        self.refuse("a.off", text.replace("4 0 1 3 2", "-4 0 1 3 2"), "number of a face's corners", line=11)
+        self.refuse("a.off", text.replace("4 0 1 3 2", "999999999999 0 1 3 2"), "face 0", line=11)
+        self.refuse("a.off", text.replace("0 0 1\n", "0 0 1 5\n"), "vertex 1", "found 4 numbers, expected 3", line=4)
+        self.refuse("a.off", text.replace("0 0 1\n", "0 nan 1\n"), line=4)
+        self.refuse("a.off", text.replace("8 6 0", "8 7 0"), "end of the file", "face 6", line=17)
+        self.refuse("a.off", text.replace("8 6 0", "8 5 0"), "after the last face", line=16)
+        self.refuse("a.off", text.replace("8 6 0", "8 -6 0"), "\"-6\"", line=2)
+        self.refuse("a.off", text.encode("utf-16"), "UTF-16")
+        self.refuse("a.off", "", "end of the file")
+
+
+class Shapes(MeshTest):
+    def write_all(self, vertices, faces):
+        """The mesh in all formats, as (name, content); STL has triangles of floats."""
+        for form in ("ascii", "little", "big"):
+            yield f"{form}.ply", ply(form, vertices, faces, place="double")
+        yield "a.obj", obj(vertices, faces)
+        yield "b.obj", obj(vertices, faces, corner="{0}/1/1", base=-len(vertices))
+        yield "a.off", off(vertices, faces)
+
+    def test_torus(self):
+        """The same mesh from all formats: closed, wound outwards, and of the torus's area and volume, as a polyhedron."""
+        vertices, quads = torus()
+        triangles = [half for a, b, c, d in quads for half in ((a, b, c), (a, c, d))]
+        area, volume = area_of(vertices, triangles), volume_of(vertices, triangles)
+        self.assertLess(abs(area / (12 * math.pi ** 2) - 1), 0.03)
+        self.assertTrue(0.94 < volume / (6 * math.pi ** 2) < 1)
+        for name, content in self.write_all(vertices, quads):
+            found = self.of(name, content)
+            self.assertEqual(found["positions"], [list(v) for v in vertices], name)
+            self.assertEqual([tuple(f) for f in found["faces"]], triangles, name)
+            self.assertEqual((found["edge"]["fault"], found["polygons"], found["dropped"]), (0, len(quads), 0), name)
+            self.assertAlmostEqual(found["area"], area, 10)
+        for content in (stl_binary(vertices, triangles), stl_text(vertices, triangles)):
+            found = self.of("a.stl", content)
+            self.assertEqual((found["vertices"], found["triangles"], found["edge"]["fault"]), (len(vertices), len(triangles), 0))
+            self.assertAlmostEqual(found["area"], area, 4)
+            self.assertAlmostEqual(volume_of(found["positions"], found["faces"]), volume, 4)
+
+    def test_concave(self):
+        """An L, as a prism: seven squares of area at each end, never a fan across its notch."""
+        low, high = list(L_SHAPE), [(x, y, 2) for x, y, _ in L_SHAPE]
+        sides = [(i, (i + 1) % 6, 6 + (i + 1) % 6, 6 + i) for i in range(6)]
+        for first in range(6):
+            end = [(first + i) % 6 for i in range(6)]
+            faces = [tuple(reversed(end)), tuple(6 + i for i in end)] + sides
+            for name, content in self.write_all(low + high, faces):
+                found = self.of(name, content)
+                self.assertEqual((found["triangles"], found["edge"]["fault"]), (20, 0))
+                self.assertAlmostEqual(found["area"], 2 * 7 + 2 * 16, 12)
+                self.assertAlmostEqual(volume_of(found["positions"], found["faces"]), 14, 12)
+
+    def test_crossing(self):
+        """A polygon that crosses itself is refused with its line."""
+        bow = [(0, 0, 0), (1, 1, 0), (1, 0, 0), (0, 1, 0)]
+        for (name, content), line in zip(self.write_all(bow, [(0, 2, 1), (0, 1, 2, 3)]), (16, 0, 0, 6, 6, 8)):
+            says = self.refuse(name, content, "crosses itself", "cut it into triangles", line=line)
+            self.assertIn("face 2 (from 1)" if name.endswith("obj") else "face 1 (from 0)", says)
+
+    def test_edges(self):
+        """The first bad edge, by faces, and what is wrong with it."""
+        def edge(faces, vertices=CORNERS):
+            found = self.of("a.obj", obj(vertices, faces))["edge"]
+            return found["fault"], found["vertices"], found["face"]
+        self.assertEqual(edge(TRIANGLES), (0, [0, 0], 0))
+        self.assertEqual(edge(TRIANGLES[:-1]), (OPEN, [1, 3], 0))
+        turned = [TRIANGLES[0]] + [TRIANGLES[1][::-1]] + TRIANGLES[2:]
+        self.assertEqual(edge(turned), (TURNED, [3, 0], 0))
+        self.assertEqual(edge([t[::-1] for t in TRIANGLES]), (0, [0, 0], 0))
+        fin = TRIANGLES + [(0, 3, 8)]
+        self.assertEqual(edge(fin, CORNERS + [(9, 9, 9)]), (SHARED, [3, 0], 0))
+        # The same places under other numbers are the same vertices.
+        apart = [CORNERS[v] for t in TRIANGLES for v in t]
+        self.assertEqual(edge([(3 * i, 3 * i + 1, 3 * i + 2) for i in range(12)], apart), (0, [0, 0], 0))
+        self.assertEqual(edge([(3 * i, 3 * i + 1, 3 * i + 2) for i in range(11)], apart)[0], OPEN)
+
+
+class Names(MeshTest):
+    def test_foreign(self):
+        """Other formats are refused by name, whatever else is in them, and a scene document is no mesh."""
+        for ending, name in ((".gltf", "glTF"), (".glb", "glTF"), (".fbx", "FBX"), (".3ds", "3D Studio"), (".dae", "COLLADA"),
+                             (".blend", "Blender")):
+            self.refuse("a" + ending, "{}", name, "export it as PLY, OBJ, STL or OFF", mesh=True)
+        self.refuse("a", b"glTF\2\0\0\0", "binary glTF", mesh=True)
+        self.refuse("a", b"Kaydara FBX Binary  \0", "FBX", mesh=True)
+        self.refuse("a", b"BLENDER-v293", "Blender", mesh=True)
+        self.refuse("a.obj", '{"spheres": []}', "no format that is known", mesh=False)
+        self.refuse("a.txt", "hello", "no format that is known", mesh=False)
+        missing = self.ask(os.path.join(self.folder, "missing.obj"))
+        self.assertFalse(missing["mesh"])
+        self.assertIn("check the path", missing["error"])
+
+    def test_content_before_name(self):
+        self.is_cube(self.of("a.obj", ply("little")))
+        self.is_cube(self.of("a.stl", off()))
+
+
+class Hostile(MeshTest):
+    def test_memory(self):
+        """What a count promises is never allocated: a thousand million faces in a kilobyte."""
+        many = 10 ** 9
+        small = ply("ascii")
+        files = {"a.ply": small.replace(b"face 6", b"face %d" % many), "b.ply": ply("little").replace(b"face 6", b"face %d" % many),
+                 "c.ply": small.replace(b"vertex 8", b"vertex %d" % many),
+                 "d.ply": ply("little", count="uint")[:-20] + struct.pack("<I", many) + bytes(400),
+                 "e.ply": small.replace(b"\n4 0 1 3 2", b"\n%d 0 1 3 2" % many),
+                 "a.off": off(counts=f" {many} {many} 0\n"), "b.off": off(counts=f" 8 {many} 0\n"),
+                 "c.off": off().replace("4 0 1 3 2", f"{many} 0 1 3 2"),
+                 "a.stl": stl_binary(count=many), "b.stl": stl_binary(count=2 ** 32 - 1, header=b"solid")}
+        for name, content in files.items():
+            found = self.ask(self.write(name, content))
+            self.assertIn("error", found, name)
+            self.assertEqual(found["code"], 7, found)
+
+    def test_every_cut(self):
+        """A file that ends anywhere is read or refused, and never with more than the whole has."""
+        for name, content in (("a.ply", ply("little", extra=True)), ("b.ply", ply("ascii")), ("a.obj", obj().encode()),
+                              ("a.stl", stl_text(triangles=TRIANGLES[:3]).encode()), ("b.stl", stl_binary(triangles=TRIANGLES[:3])),
+                              ("a.off", off().encode())):
+            stem, ending = name.split(".")
+            lengths = range(len(content))
+            paths = [self.write(f"{stem}{length}.{ending}", content[:length]) for length in lengths]
+            for length, found in zip(lengths, self.ask_all(*paths)):
+                self.assertTrue("error" in found or found["triangles"] <= 12, (name, length))
+
+    def test_bombs(self):
+        """A kilobyte of packed text for each megabyte: refused in memory that grows with the text, or not at all."""
+        megabytes = 8 if SANITIZED else 24
+        for name, start, block in (("a.obj", "", "f\n" * 500000), ("a.obj", "f", " 1 \\\n" * 180000), ("a.obj", "", "#" * 1000000),
+                                   ("a.obj", "", "usemtl a\n" * 120000), ("a.off", "OFF\n", "\n" * 1000000), ("a.off", "OFF 1 1\n0 0 0\n", "9" * 1000000),
+                                   ("a.stl", "solid\n", "facet " * 170000), ("a.ply", "ply\nformat ascii 1.0\n", "comment\n" * 125000)):
+            self.refuse(name + ".gz", gzip.compress((start + block * megabytes).encode(), 1))
+
+
+class Independent(MeshTest):
+    """Beside trimesh."""
+
+    def theirs(self, *arguments):
+        result = subprocess.run([READERS_PYTHON, "-B", os.path.join(os.path.dirname(os.path.abspath(__file__)), "independent_meshes.py"),
+                                 *arguments], capture_output=True, check=False)
+        if result.returncode == 77:
+            self.skipTest(f"trimesh is not installed for {READERS_PYTHON}")
+        self.assertEqual(result.returncode, 0, result.stderr.decode()[-2000:])
+        return json.loads(result.stdout)
+
+    def test_models(self):
+        """Every PLY, OBJ, STL and OFF file of Debian's assimp-testmodels: as trimesh reads it, or refused for a reason."""
+        if not os.path.isdir(MODELS):
+            self.skipTest("assimp-testmodels is not installed")
+        refused = {"box_UTF16BE.obj": "UTF-16", "box_longline.obj": "crosses itself", "number_formats.obj": "3.1+e2", "point_cloud.obj": "no faces",
+                   "testline.obj": "no faces", "testpoints.obj": "no faces", "invalid.off": "face 1", "Wuson.ply": "\"Created\"",
+                   "issue623.ply": "no faces", "points.ply": "no faces", "pond.0.ply": "no faces", "OutOfMemory.off": "vertex 8",
+                   "empty.obj": "no faces", "empty.off": "end of the file", "empty.ply": "end of the file", "malformed.obj": "vertex 0"}
+        fanned = {"concave_polygon.obj", "space_in_material_name.obj"}  # polygons that trimesh cuts by a fan, over the edge
+        paths = sorted(os.path.join(folder, name) for folder, _, names in os.walk(MODELS) for name in names
+                       if name.lower().endswith((".ply", ".obj", ".stl", ".off")))
+        self.assertGreater(len(paths), 40)
+        read = self.theirs("read", *paths)
+        for path in paths:
+            name, found = os.path.basename(path), self.ask("--whole", path)
+            if name in refused:
+                self.assertIn(refused[name], found.get("error", ""), name)
+                continue
+            self.assertNotIn("error", found, name)
+            their = read[path]
+            # trimesh leaves out one triangle of a face that has a vertex twice.
+            self.assertEqual(found["triangles"] + found["dropped"] - (name == "malformed2.obj"), their["triangles"], name)
+            places = sorted({tuple(round(c, 5) + 0.0 for c in found["positions"][v]) for face in found["faces"] for v in face})
+            self.near(places, their["places"], 2e-5 * max(1, max(abs(c) for place in places for c in place)))
+            if name not in fanned:
+                self.assertLess(abs(found["area"] / their["area"] - 1), 1e-6, name)
+        for name in fanned:  # Newell's area of its one flat polygon
+            self.assertAlmostEqual(self.ask(os.path.join(MODELS, "OBJ", name))["area"], 0.2454966872, 9)
+
+    def test_written(self):
+        """What trimesh writes, with colours, of meshes that it makes."""
+        for case in self.theirs("write", self.folder):
+            found = self.ask("--whole", case["path"])
+            self.assertNotIn("error", found, case["path"])
+            self.assertEqual(found["triangles"], case["triangles"], case["path"])
+            self.assertAlmostEqual(found["area"] / case["area"], 1, 5)
+            self.assertEqual(found["edge"]["fault"] == 0, case["closed"], case["path"])
+            if case["closed"]:
+                self.assertAlmostEqual(volume_of(found["positions"], found["faces"]) / case["volume"], 1, 5)
+            for kind in ("vertex_colors", "face_colors"):
+                if kind in case:
+                    self.near(found[kind], [[linear(c / 255) for c in color] for color in case[kind]], 1e-6)
+
+
+if __name__ == "__main__":
+    tests = unittest.main(argv=[sys.argv[0]] + sys.argv[2:], exit=False).result
+    for why in dict.fromkeys(why for _, why in tests.skipped):
+        print(f"skipped: {why}")
+    sys.exit(0 if tests.wasSuccessful() else 1)
