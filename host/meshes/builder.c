@@ -232,10 +232,11 @@ static BpStatus cut(Finish *f, size_t number, const uint32_t *corners, BpError *
 
 static BpStatus cut_all(Finish *f, BpError *err) {
     const MeshBuilder *const b = f->builder;
-    const uint32_t *corners = b->corners;
+    size_t begin = 0;
     for (size_t n = 0; n < b->polygon_count; n++) {
-        BP_TRY(cut(f, n, corners, err));
-        corners += b->polygons[n].corner_count;
+        const uint32_t count = b->polygons[n].corner_count;
+        BP_TRY(cut(f, n, count > 0 ? &b->corners[begin] : NULL, err));
+        begin += count;
     }
     return BP_OK;
 }

@@ -116,7 +116,7 @@ def seeds():
                        "huge": text.replace(b"face 6", b"face 1000000000"), "l": ply("ascii", L_SHAPE, [range(6)]),
                        "gz": gzip_of(text)},
         "meshes_obj": {"plain": cube.encode(), "mtl": OBJ_WITH_MTL.encode() + b"\0" + MTL.encode(), "l": obj(L_SHAPE, [range(6)]).encode(),
-                       "colours": b"v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n", "curve": b"v 0 0 0\ncstype bezier\n",
+                       "colours": b"v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n", "no-corners": b"v 0 0 0\nf\n", "curve": b"v 0 0 0\ncstype bezier\n",
                        "bow": b"v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n",
                        "holed": b"v 0 0 0\nv 8 0 0\nv 8 8 0\nv 0 8 0\nv 2 2 0\nv 2 6 0\nv 6 6 0\nv 6 2 0\nf 1 2 3 4 1 5 6 7 8 5\n"},
         "meshes_stl": {"text": stl_text(triangles=TRIANGLES[:3]).encode(), "binary": stl_binary(triangles=TRIANGLES[:4], attribute=3),

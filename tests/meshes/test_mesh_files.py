@@ -255,6 +255,7 @@ class Obj(MeshTest):
         found = self.of("a.obj", obj() + "f 1 2 2\nf 1 1 1\nf 1 2\nf 1 1 2 3\nv 2 0 0\nv 3 0 0\nv 4 0 0\nf 9 10 11\n")
         self.assertEqual((found["triangles"], found["dropped"], found["polygons"]), (13, 5, 7))
         self.assertEqual(found["faces"][-1], [2, 0, 1])
+        self.refuse("a.obj", "f\n", "no triangle with an area")
         self.refuse("a.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n", "no triangle with an area")
 
 
