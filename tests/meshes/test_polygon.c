@@ -145,6 +145,10 @@ static void outlines_by_hand(void **unused) {
         10, {{0, 0}, {8, 0}, {8, 8}, {0, 8}, {0, 0}, {2, 2}, {2, 6}, {6, 6}, {6, 2}, {2, 2}}};
     /* Two squares that touch at a corner. */
     static const Outline touching = {8, {{0, 0}, {3, 0}, {3, 3}, {6, 3}, {6, 6}, {3, 6}, {3, 3}, {0, 3}}};
+    /* Two triangles that touch at the first corner, where an ear of both would have the edges of both inside.
+     */
+    static const Outline pair = {6, {{0, 1}, {1, 0}, {3, 3}, {0, 1}, {2, 3}, {0, 3}}};
+    check_all_ways(&pair, false, -1, 5);
     check_all_ways(&l, true, -1, 5);
     check_all_ways(&flat, true, -1, 5);
     check_all_ways(&arrow, true, -5, 5);
@@ -217,6 +221,9 @@ static void no_area_makes_no_triangles(void **unused) {
     static const Outline spike = {6, {{0, 0}, {4, 0}, {9, 0}, {4, 0}, {4, 4}, {0, 4}}};
     check_all_ways(&twice, false, -1, 10);
     check_all_ways(&spike, false, -1, 10);
+    /* Two triangles and a way between them along a line, beyond both. */
+    static const Outline tail = {5, {{4, 3}, {3, 3}, {4, 2}, {2, 3}, {1, 3}}};
+    check_all_ways(&tail, false, -1, 10);
     assert_int_equal(cut(&cutter, &twice, 0, false), POLYGON_CUT);
     assert_int_equal(cutter.triangle_count, 2);
     assert_int_equal(cut(&cutter, &spike, 0, false), POLYGON_CUT);
@@ -317,17 +324,16 @@ static void signs_are_exact(void **unused) {
         assert_int_equal(orient(at[1], at[0], at[2]), -sign);
         zeros += sign == 0;
     }
-    /* By tenths, which doubles round: the sign is that of the rounded numbers, in long double as an integer.
-     */
+    /* Differences that doubles round, since one point is far nearer to 0: in units of 2^-62. */
     for (int round = 0; round < 100000; round++) {
         double at[3][2];
         int64_t p[3][2];
-        const double t = draw(1000) / 7.0;
+        const double steps = draw(1000) / 1000.0;
         for (int k = 0; k < 2; k++) {
-            at[0][k] = 0.5 + draw(1000) / 2001.0;
-            at[1][k] = 0.5 + draw(1000) / 2001.0;
-            at[2][k] = at[0][k] + (at[1][k] - at[0][k]) * (t - floor(t));
-            for (int i = 0; i < 3; i++) p[i][k] = (int64_t)(at[i][k] * 9007199254740992.0);
+            at[0][k] = ldexp((double)((int64_t)draw(1u << 30) << 23 | draw(1u << 23)), -62);
+            at[1][k] = 0.5 + draw(1u << 30) / 4294967296.0;
+            at[2][k] = at[1][k] + (at[1][k] - at[0][k]) * steps;
+            for (int i = 0; i < 3; i++) p[i][k] = (int64_t)ldexp(at[i][k], 62);
         }
         const Wide one = (Wide)(p[0][0] - p[2][0]) * (p[1][1] - p[2][1]);
         const Wide other = (Wide)(p[0][1] - p[2][1]) * (p[1][0] - p[2][0]);
@@ -335,7 +341,7 @@ static void signs_are_exact(void **unused) {
             (at[0][0] - at[2][0]) * (at[1][1] - at[2][1]) - (at[0][1] - at[2][1]) * (at[1][0] - at[2][0]);
         const int sign = (one > other) - (one < other);
         assert_int_equal(orient(at[0], at[1], at[2]), sign);
-        doubtful += sign != (rounded > 0) - (rounded < 0);
+        doubtful += rounded != 0 && sign != (rounded > 0 ? 1 : -1);
     }
     assert_true(zeros > 1000);
     print_message("%d on one line, %d whose sign doubles get wrong\n", zeros, doubtful);
