@@ -220,9 +220,10 @@ static BpStatus read_either(Stl *stl, BpError *err) {
                           length);
     return input_fail(input, false, err,
                       "found %" PRIu64 " bytes, expected %" PRIu64
-                      ", the length of a binary STL file with as many triangles as this one counts: it is "
-                      "truncated, or no STL file",
-                      length, wanted);
+                      ", the length of a binary STL file with as many triangles as this one counts: %s",
+                      length, wanted,
+                      length < wanted ? "it is truncated, or no STL file"
+                                      : "remove what follows them, or correct their number");
 }
 
 BpStatus mesh_read_stl(MeshBuilder *builder, BpError *err) {

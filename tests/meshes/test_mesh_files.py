@@ -295,8 +295,8 @@ class Stl(MeshTest):
         self.assertEqual((found["triangles"], found["dropped"]), (12, 2))
 
     def test_hostile(self):
-        self.refuse("a.stl", stl_binary()[:-1], "683 bytes, expected 684")
-        self.refuse("a.stl", stl_binary() + b"xx", "686 bytes, expected 684")
+        self.refuse("a.stl", stl_binary()[:-1], "683 bytes, expected 684", "truncated")
+        self.refuse("a.stl", stl_binary() + b"xx", "686 bytes, expected 684", "remove what follows")
         self.refuse("a.stl", stl_binary(count=10 ** 9), "expected 50000000084")
         self.refuse("a.stl", stl_binary(header=b"solid")[:-1], "683 bytes, expected 684")
         self.refuse("a.stl", stl_binary(count=0, triangles=[]), "no triangle")
