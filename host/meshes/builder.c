@@ -7,6 +7,7 @@
 #include "polygon.h"
 
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -145,9 +146,10 @@ BpStatus mesh_end_polygon(MeshBuilder *builder, uint32_t material, bool with_lin
 BpStatus mesh_find_material(MeshBuilder *builder, const char *name, uint32_t *number, BpError *err) {
     BpMesh *const mesh = builder->mesh;
     uint16_t of_name = 0;
+    const uint64_t line = builder->input->line;
     const BpStatus status = names_number(&builder->names, name, &of_name, err);
     if (status != BP_OK) {
-        bp_error_at(err, builder->input->name, (int)builder->input->line, 0);
+        bp_error_at(err, builder->input->name, line < INT_MAX ? (int)line : INT_MAX, 0);
         return status;
     }
     *number = of_name > 0 ? of_name - 1u : BP_MESH_NO_MATERIAL;

@@ -49,6 +49,14 @@ static void first_word(const Input *input, char *word, size_t size) {
     word[length] = '\0';
 }
 
+/* Whether it is OFF, with the letters for what vertices have before it. */
+static bool is_off_word(const char *word) {
+    static const char *const letters[] = {"ST", "C", "N", "4", "n"};
+    for (size_t i = 0; i < sizeof letters / sizeof *letters; i++)
+        if (strncmp(word, letters[i], strlen(letters[i])) == 0) word += strlen(letters[i]);
+    return strcmp(word, "OFF") == 0;
+}
+
 /* Whether a text begins like one of STL. */
 static bool is_stl_text(const Input *input, const char *word) {
     const unsigned char *const text = input->buffer + input->begin;
@@ -70,8 +78,7 @@ static Format find_format(Input *input, const char *path, const char **other) {
     first_word(input, word, sizeof word);
     if (word[0] == '{') return FORMAT_NONE; /* a scene document, whatever its name */
     if (strcmp(word, "ply") == 0) return FORMAT_PLY;
-    const size_t length = strlen(word);
-    if (length >= 3 && length <= 8 && strcmp(word + length - 3, "OFF") == 0) return FORMAT_OFF;
+    if (is_off_word(word)) return FORMAT_OFF;
     if (has_ending(path, ".ply")) return FORMAT_PLY;
     if (has_ending(path, ".obj")) return FORMAT_OBJ;
     if (has_ending(path, ".off")) return FORMAT_OFF;

@@ -243,6 +243,7 @@ class Obj(MeshTest):
         for word in ("cstype rat bspline", "curv2 1 2", "surf 0 1 0 1 1 2", "deg 3"):
             self.refuse("a.obj", "v 0 0 0\n" + word + "\n", word.split()[0], "free-form", line=2)
         self.refuse("a.obj", "v 0 0 0\np 1\n", "no faces")
+        self.refuse("a.obj", "".join(f"usemtl {i}\n" for i in range(65537)), "different names", line=65536)
         self.refuse("a.obj", "", "no faces")
         self.refuse("a.obj", obj().encode("utf-16"), "UTF-16")
         self.refuse("a.obj", b"v 0 0 0\0\n", "value 0", line=1)
@@ -434,6 +435,7 @@ class Names(MeshTest):
         self.refuse("a", b"BLENDER-v293", "Blender", mesh=True)
         self.refuse("a.obj", '{"spheres": []}', "no format that is known", mesh=False)
         self.refuse("a.txt", "hello", "no format that is known", mesh=False)
+        self.refuse("a.txt", "CUTOFF 3", "no format that is known", mesh=False)
         missing = self.ask(os.path.join(self.folder, "missing.obj"))
         self.assertFalse(missing["mesh"])
         self.assertIn("check the path", missing["error"])
