@@ -26,8 +26,7 @@ enum { LARGE_FILE = 1 << 17 };
 BpStatus input_init(Input *input, FILE *stream, const char *name, BpError *err) {
     *input = (Input){.stream = stream, .name = name, .capacity = FIRST_BLOCK};
     input->buffer = malloc(FIRST_BLOCK + 1); /* one more for the NUL after a last line */
-    if (input->buffer == NULL)
-        return bp_fail(err, BP_ERR_MEMORY, "out of memory for a block of a file of particles");
+    if (input->buffer == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a block of a file");
     return input_rewind(input, err);
 }
 

@@ -1,4 +1,4 @@
-/* input.h: the bytes and lines of a file of particles, unpacked where gzip packed them.
+/* input.h: the bytes and lines of a file of particles or of a mesh, unpacked where gzip packed them.
  *
  * In:    a stream.   Out: blocks, lines, words, numbers; errors with file and line.
  * Knows: gzip (zlib), encodings, how programs write numbers.   Does not know: which formats there are. Memory

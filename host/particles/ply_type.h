@@ -1,5 +1,5 @@
-/* ply_type.h: the types of numbers in PLY files, for both readers: of clouds (formats/ply.c) and of particles
- * (read_ply.c).
+/* ply_type.h: the types of numbers in PLY files, for all readers: of clouds (formats/ply.c), of particles
+ * (read_ply.c) and of meshes (meshes/read_ply.c).
  *
  * In:    a type's name, a number's bytes.   Out: the type, its size, the number.
  * Does not know: what properties mean. */

@@ -22,6 +22,7 @@ from samples import CORNERS, L_SHAPE, SIDES, TRIANGLES, obj, off, ply, stl_binar
 READERS_PYTHON = os.environ.get("BALLPARK_READERS_PYTHON", sys.executable)
 MODELS = "/usr/share/assimp/models"
 OPEN, SHARED, TURNED = 1, 2, 3
+OUT_OF_MEMORY = 2  # of BpStatus
 MEMORY = 1 << 28  # bytes that a hostile file may make the program ask for, which sanitizers cannot be held to
 SANITIZED = "asan" in os.path.abspath(sys.argv[1])
 TORUS_U, TORUS_V = 24, 16
@@ -462,6 +463,27 @@ class Hostile(MeshTest):
             self.assertIn("error", found, name)
             self.assertEqual(found["code"], 7, found)
 
+    def test_little_memory(self):
+        """Where memory ends, that is what the error says, wherever it happens."""
+        if SANITIZED:
+            self.skipTest("sanitizers cannot be held to a limit of memory")
+        vertices = [(i % 100, i // 100, 0) for i in range(20000)]
+        faces = [(i, i + 1, i + 101, i + 100) for i in range(19800) if i % 100 < 99]
+        paths = [self.write("a.ply", ply("little", vertices, faces)), self.write("a.obj", obj(vertices, faces)),
+                 self.write("a.off", off(vertices, faces)), self.write("a.stl", stl_binary(vertices, [f[:3] for f in faces]))]
+        for path in paths:
+            read, short = 0, 0
+            for limit in range(2 << 20, 12 << 20, 256 << 10):
+                result = subprocess.run([sys.argv[1], path], capture_output=True, check=False, timeout=120,
+                                        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_DATA, (limit, limit)))
+                if result.returncode == 127:  # the program does not even begin
+                    continue
+                self.assertEqual(result.returncode, 0, (path, limit, result.stderr))
+                found = json.loads(result.stdout)
+                self.assertIn(found.get("code", 0), (0, OUT_OF_MEMORY), found)
+                read, short = read + ("code" not in found), short + ("code" in found)
+            self.assertTrue(read > 3 and short > 3, (path, read, short))
+
     def test_every_cut(self):
         """A file that ends anywhere is read or refused, and never with more than the whole has."""
         for name, content in (("a.ply", ply("little", extra=True)), ("b.ply", ply("ascii")), ("a.obj", obj().encode()),
@@ -482,8 +504,48 @@ class Hostile(MeshTest):
             self.refuse(name + ".gz", gzip.compress((start + block * megabytes).encode(), 1))
 
 
-class Independent(MeshTest):
+REFUSED = {"box_UTF16BE.obj": "UTF-16", "box_longline.obj": "crosses itself", "number_formats.obj": "3.1+e2", "point_cloud.obj": "no faces",
+           "testline.obj": "no faces", "testpoints.obj": "no faces", "invalid.off": "face 1", "Wuson.ply": "\"Created\"",
+           "issue623.ply": "no faces", "points.ply": "no faces", "pond.0.ply": "no faces", "OutOfMemory.off": "vertex 8",
+           "empty.obj": "no faces", "empty.off": "end of the file", "empty.ply": "end of the file", "malformed.obj": "vertex 0"}
+FANNED = {"concave_polygon.obj", "space_in_material_name.obj"}  # polygons that trimesh cuts by a fan, over the edge
+
+
+class Models(MeshTest):
+    """Every PLY, OBJ, STL and OFF file of Debian's assimp-testmodels is read, or refused for a reason."""
+
+    def models(self):
+        if not os.path.isdir(MODELS):
+            self.skipTest("assimp-testmodels is not installed")
+        paths = sorted(os.path.join(folder, name) for folder, _, names in os.walk(MODELS) for name in names
+                       if name.lower().endswith((".ply", ".obj", ".stl", ".off")))
+        self.assertGreater(len(paths), 40)
+        return paths
+
+    def test_reasons(self):
+        for path in self.models():
+            name, found = os.path.basename(path), self.ask(path)
+            if name in REFUSED:
+                self.assertIn(REFUSED[name], found.get("error", ""), name)
+            else:
+                self.assertNotIn("error", found, name)
+
+    def test_known(self):
+        """What can be known of some of them without another reader: cubes, and Newell's area of a flat polygon."""
+        found = {os.path.basename(path): self.ask(path) for path in self.models() if os.path.basename(path) not in REFUSED}
+        for name in ("box.obj", "cube_usemtl.obj", "testmixed.obj", "box_mat_with_spaces.obj", "Cube.off", "cube.ply", "cube_binary.ply"):
+            self.assertEqual((found[name]["triangles"], found[name]["area"], found[name]["edge"]["fault"]), (12, 6, 0), name)
+        for name in FANNED:
+            self.assertAlmostEqual(found[name]["area"], 0.2454966872, 9)
+        for name in ("WusonOBJ.obj", "Wuson.stl", "Wuson.off"):  # one model in three formats
+            self.assertEqual(found[name]["triangles"], 3732)
+            self.assertAlmostEqual(found[name]["area"], 9.0258039, 6)
+
+
+class Independent(Models):
     """Beside trimesh."""
+
+    test_reasons = test_known = None
 
     def theirs(self, *arguments):
         result = subprocess.run([READERS_PYTHON, "-B", os.path.join(os.path.dirname(os.path.abspath(__file__)), "independent_meshes.py"),
@@ -494,33 +556,16 @@ class Independent(MeshTest):
         return json.loads(result.stdout)
 
     def test_models(self):
-        """Every PLY, OBJ, STL and OFF file of Debian's assimp-testmodels: as trimesh reads it, or refused for a reason."""
-        if not os.path.isdir(MODELS):
-            self.skipTest("assimp-testmodels is not installed")
-        refused = {"box_UTF16BE.obj": "UTF-16", "box_longline.obj": "crosses itself", "number_formats.obj": "3.1+e2", "point_cloud.obj": "no faces",
-                   "testline.obj": "no faces", "testpoints.obj": "no faces", "invalid.off": "face 1", "Wuson.ply": "\"Created\"",
-                   "issue623.ply": "no faces", "points.ply": "no faces", "pond.0.ply": "no faces", "OutOfMemory.off": "vertex 8",
-                   "empty.obj": "no faces", "empty.off": "end of the file", "empty.ply": "end of the file", "malformed.obj": "vertex 0"}
-        fanned = {"concave_polygon.obj", "space_in_material_name.obj"}  # polygons that trimesh cuts by a fan, over the edge
-        paths = sorted(os.path.join(folder, name) for folder, _, names in os.walk(MODELS) for name in names
-                       if name.lower().endswith((".ply", ".obj", ".stl", ".off")))
-        self.assertGreater(len(paths), 40)
+        paths = [path for path in self.models() if os.path.basename(path) not in REFUSED]
         read = self.theirs("read", *paths)
         for path in paths:
-            name, found = os.path.basename(path), self.ask("--whole", path)
-            if name in refused:
-                self.assertIn(refused[name], found.get("error", ""), name)
-                continue
-            self.assertNotIn("error", found, name)
-            their = read[path]
+            name, found, their = os.path.basename(path), self.ask("--whole", path), read[path]
             # trimesh leaves out one triangle of a face that has a vertex twice.
             self.assertEqual(found["triangles"] + found["dropped"] - (name == "malformed2.obj"), their["triangles"], name)
             places = sorted({tuple(round(c, 5) + 0.0 for c in found["positions"][v]) for face in found["faces"] for v in face})
             self.near(places, their["places"], 2e-5 * max(1, max(abs(c) for place in places for c in place)))
-            if name not in fanned:
+            if name not in FANNED:
                 self.assertLess(abs(found["area"] / their["area"] - 1), 1e-6, name)
-        for name in fanned:  # Newell's area of its one flat polygon
-            self.assertAlmostEqual(self.ask(os.path.join(MODELS, "OBJ", name))["area"], 0.2454966872, 9)
 
     def test_written(self):
         """What trimesh writes, with colours, of meshes that it makes."""
