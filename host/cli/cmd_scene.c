@@ -33,8 +33,8 @@ static BpStatus move_files(BpScene *scene, const char *from, const char *to, BpE
     if (same_folder(from, to)) return BP_OK;
     for (size_t i = 0; i < scene->image_count; i++) BP_TRY(bp_image_move(from, to, scene->images[i], err));
     for (size_t i = 0; i < scene->point_file_count; i++) {
-        if (scene->point_files[i].particles == NULL) continue;
-        BP_TRY(bp_point_file_move(from, to, &scene->point_files[i], err));
+        if (scene->point_files[i].entry == NULL) continue;
+        BP_TRY(bp_shape_file_move(from, to, &scene->point_files[i], err));
     }
     return BP_OK;
 }

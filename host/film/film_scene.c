@@ -18,7 +18,7 @@ static double largest(const double rgb[3]) {
 /* The largest share of light that a shape passes on. */
 static double shape_albedo(const BpScene *scene, size_t shape) {
     const BpMaterial *material = &scene->materials[bp_shape_material(scene, shape)];
-    const uint32_t own = shape < scene->sphere_count ? scene->spheres[shape].albedo : BP_NO_ALBEDO;
+    const uint32_t own = bp_shape_albedo(scene, shape);
     if (!bp_material_has(material->kind, BP_MEMBER_ALBEDO)) return 1;
     if (own == BP_NO_ALBEDO) return largest(material->albedo);
     const float *albedo = scene->albedos[own];
@@ -181,7 +181,7 @@ static uint64_t mix_textures(uint64_t hash, const BpScene *scene, const BpMateri
     return hash;
 }
 
-/* All but the albedo, which a sphere may bring itself. */
+/* All but the albedo, which a shape may bring itself. */
 static uint64_t hash_material(const BpMaterial *material) {
     uint64_t hash = mix(0xcbf29ce484222325u, (uint64_t)material->kind);
     hash = mix_reals(hash, material->emit, 3);
@@ -206,18 +206,23 @@ static uint64_t mix_medium(uint64_t hash, const BpScene *scene, uint32_t number)
     return mix_real(hash, medium->anisotropy);
 }
 
+/* What a material has beside hash_material(), on a shape with an albedo of its own or BP_NO_ALBEDO. */
+static uint64_t mix_colours(uint64_t hash, const BpScene *scene, const BpMaterial *material,
+                            uint32_t albedo) {
+    if (bp_material_varies(material)) hash = mix_textures(hash, scene, material, albedo != BP_NO_ALBEDO);
+    if (!bp_material_has(material->kind, BP_MEMBER_ALBEDO)) return hash;
+    if (albedo == BP_NO_ALBEDO) return mix_reals(hash, material->albedo, 3);
+    for (size_t c = 0; c < 3; c++) hash = mix_real(hash, (double)scene->albedos[albedo][c]);
+    return hash;
+}
+
 static uint64_t mix_sphere(uint64_t hash, const BpScene *scene, const BpSphere *sphere) {
     const BpMaterial *material = &scene->materials[sphere->material];
     hash = mix_reals(hash, sphere->center, 3);
     /* Materials without an inside turn the normal towards the ray. */
     const bool inside = bp_material_is(material->kind, BP_HAS_INSIDE);
     hash = mix_real(hash, inside ? sphere->radius : fabs(sphere->radius));
-    if (bp_material_varies(material))
-        hash = mix_textures(hash, scene, material, sphere->albedo != BP_NO_ALBEDO);
-    if (!bp_material_has(material->kind, BP_MEMBER_ALBEDO)) return hash;
-    if (sphere->albedo == BP_NO_ALBEDO) return mix_reals(hash, material->albedo, 3);
-    for (size_t c = 0; c < 3; c++) hash = mix_real(hash, (double)scene->albedos[sphere->albedo][c]);
-    return hash;
+    return mix_colours(hash, scene, material, sphere->albedo);
 }
 
 /* Members that came later: a scene without them keeps the hash that it had before. */
@@ -273,6 +278,7 @@ uint64_t bp_scene_hash(const BpScene *scene) {
             material_hash = hash_material(&scene->materials[triangle->material]);
         known = triangle->material;
         for (int k = 0; k < 3; k++) hash = mix_reals(mix(hash, material_hash), triangle->vertices[k], 3);
+        hash = mix_colours(hash, scene, &scene->materials[triangle->material], triangle->albedo);
     }
     return hash;
 }

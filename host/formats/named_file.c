@@ -68,15 +68,23 @@ void bp_name_document(const BpNode *file_node, const char *what, BpError *err) {
     bp_error_clear(&place);
 }
 
-BpStatus bp_keep_point_file(const char *file, size_t first, const char *particles, BpScene *scene,
-                            BpError *err) {
-    BpPointFile *files = realloc(scene->point_files, (scene->point_file_count + 1) * sizeof *files);
-    if (files == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a cloud");
-    scene->point_files = files;
-    files[scene->point_file_count++] = (BpPointFile){.first = first};
-    if (particles != NULL)
-        BP_TRY(bp_copy_text(particles, &files[scene->point_file_count - 1].particles, err));
-    return bp_copy_text(file, &files[scene->point_file_count - 1].file, err);
+static BpStatus keep_file(const char *file, size_t first, const char *entry, BpShapeFile **files,
+                          size_t *count, BpError *err) {
+    BpShapeFile *const grown = realloc(*files, (*count + 1) * sizeof *grown);
+    if (grown == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the name of a file");
+    *files = grown;
+    BpShapeFile *const kept = &grown[(*count)++];
+    *kept = (BpShapeFile){.first = first};
+    if (entry != NULL) BP_TRY(bp_copy_text(entry, &kept->entry, err));
+    return bp_copy_text(file, &kept->file, err);
+}
+
+BpStatus bp_keep_point_file(const char *file, size_t first, const char *entry, BpScene *scene, BpError *err) {
+    return keep_file(file, first, entry, &scene->point_files, &scene->point_file_count, err);
+}
+
+BpStatus bp_keep_mesh_file(const char *file, size_t first, const char *entry, BpScene *scene, BpError *err) {
+    return keep_file(file, first, entry, &scene->mesh_files, &scene->mesh_file_count, err);
 }
 
 /* ---- a document at another place ----------------------------------------------------------------------- */
@@ -108,11 +116,11 @@ static char *path_moved(const char *document, const char *to, const char *file, 
     return moved;
 }
 
-BpStatus bp_point_file_move(const char *document, const char *to, BpPointFile *file, BpError *err) {
+BpStatus bp_shape_file_move(const char *document, const char *to, BpShapeFile *file, BpError *err) {
     BpStatus status = BP_OK;
     bool no_memory = false;
     char *const moved = path_moved(document, to, file->file, &no_memory);
-    json_t *const entry = json_loads(file->particles, 0, NULL);
+    json_t *const entry = json_loads(file->entry, 0, NULL);
     char *text = NULL;
     if (moved != NULL && entry != NULL && json_object_set_new(entry, "file", json_string(moved)) == 0)
         text = json_dumps(entry, JSON_PRESERVE_ORDER);
@@ -122,8 +130,8 @@ BpStatus bp_point_file_move(const char *document, const char *to, BpPointFile *f
         status = bp_fail(err, BP_ERR_SCENE, "cannot name %.200s in UTF-8; write the document beside it",
                          file->file);
     } else {
-        free(file->particles);
-        file->particles = text;
+        free(file->entry);
+        file->entry = text;
         status = bp_copy_text(moved, &file->file, err);
     }
     json_decref(entry);

@@ -31,6 +31,7 @@ static void put(BpTriangle *triangle, const double *a, const double *b, const do
     memcpy(triangle->vertices[1], b, sizeof triangle->vertices[1]);
     memcpy(triangle->vertices[2], c, sizeof triangle->vertices[2]);
     triangle->material = material;
+    triangle->albedo = BP_NO_ALBEDO;
 }
 
 static BpStatus parse_triangle(const BpNode *node, const BpMaterialIndex *index, BpTriangle *triangle,
@@ -41,6 +42,7 @@ static BpStatus parse_triangle(const BpNode *node, const BpMaterialIndex *index,
     BP_TRY(bp_node_require(node, "vertices", vertices, err));
     const BpNode points = bp_node_member(node, "vertices");
     BP_TRY(parse_points(&points, 3, vertices, triangle->vertices, err));
+    triangle->albedo = BP_NO_ALBEDO;
     return parse_material(node, index, &triangle->material, err);
 }
 

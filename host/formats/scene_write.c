@@ -369,9 +369,9 @@ static void put_particles(FILE *out, const BpScene *scene) {
     const char *comma = "";
     fputs(",\n  \"particles\": [", out);
     for (size_t i = 0; i < scene->point_file_count; i++) {
-        if (scene->point_files[i].particles == NULL) continue;
+        if (scene->point_files[i].entry == NULL) continue;
         fprintf(out, "%s\n    ", comma);
-        bp_print_json_escaped(scene->point_files[i].particles, out);
+        bp_print_json_escaped(scene->point_files[i].entry, out);
         comma = ",";
     }
     fputs("\n  ]", out);

@@ -403,30 +403,31 @@ static BpStatus pack_textures(const BpScene *scene, const double origin[3], BpPa
     return packed->textures != NULL ? BP_OK : out_of_memory(scene, err);
 }
 
-static bool is_inside_out(const BpScene *scene, const BpSphere *sphere) {
-    return sphere->radius < 0 && bp_material_is(scene->materials[sphere->material].kind, BP_HAS_INSIDE);
+static bool is_inside_out(const BpScene *scene, size_t shape) {
+    return shape < scene->sphere_count && scene->spheres[shape].radius < 0 &&
+           bp_material_is(scene->materials[scene->spheres[shape].material].kind, BP_HAS_INSIDE);
 }
 
 /* Colours of its own, as points of clouds have them, that stand in place of its material's texture. */
-static bool replaces_texture(const BpScene *scene, const BpSphere *sphere) {
-    return sphere->albedo != BP_NO_ALBEDO &&
-           scene->materials[sphere->material].texture[BP_MEMBER_ALBEDO] != 0;
+static bool replaces_texture(const BpScene *scene, size_t shape) {
+    return bp_shape_albedo(scene, shape) != BP_NO_ALBEDO &&
+           scene->materials[bp_shape_material(scene, shape)].texture[BP_MEMBER_ALBEDO] != 0;
 }
 
-/* Whether a sphere could have a second entry of the material. */
+/* Whether a shape could have a second entry of the material. */
 static bool may_have_second(const BpMaterial *material) {
     return bp_material_is(material->kind, BP_HAS_INSIDE) || material->texture[BP_MEMBER_ALBEDO] != 0;
 }
 
-/* Whether the sphere has the second entry of its material. */
-static bool is_second(const BpScene *scene, const BpSphere *sphere) {
-    return is_inside_out(scene, sphere) || replaces_texture(scene, sphere);
+/* Whether the shape has the second entry of its material. */
+static bool is_second(const BpScene *scene, size_t shape) {
+    return is_inside_out(scene, shape) || replaces_texture(scene, shape);
 }
 
 /* The materials. Some get a second entry, and no material has both reasons for it. A dielectric that a sphere
  * of negative radius uses: with the reciprocal index, since seen from inside out is the same as inside and
  * outside exchanged; normals face the ray, so no other kind can tell a negative radius. And one whose albedo
- * varies, for spheres that have a colour of their own. `second[m]`: the number of that entry of material m.
+ * varies, for shapes that have a colour of their own. `second[m]`: the number of that entry of material m.
  */
 static BpStatus pack_materials(const BpScene *scene, uint32_t *second, BpPacked *packed, BpError *err) {
     const size_t count = scene->material_count;
@@ -451,11 +452,10 @@ static BpStatus pack_materials(const BpScene *scene, uint32_t *second, BpPacked 
                                           .fuzz = texture[BP_MEMBER_FUZZ],
                                           .emit = texture[BP_MEMBER_EMIT]};
     }
-    for (size_t i = 0; i < scene->sphere_count && any; ++i) {
-        const BpSphere *sphere = &scene->spheres[i];
-        const uint32_t m = sphere->material;
-        if (!is_second(scene, sphere) || second[m] != 0) continue;
-        pack_material(&scene->materials[m], is_inside_out(scene, sphere), &numbers[used], &kinds[used]);
+    for (size_t i = 0; i < bp_scene_shapes(scene) && any; ++i) {
+        const uint32_t m = bp_shape_material(scene, i);
+        if (!is_second(scene, i) || second[m] != 0) continue;
+        pack_material(&scene->materials[m], is_inside_out(scene, i), &numbers[used], &kinds[used]);
         variations[used] = variations[m];
         variations[used].albedo = 0;
         second[m] = used++;
@@ -477,7 +477,7 @@ cleanup:
  * colour a cloud gives. */
 typedef struct Scattered {
     double albedo[3];
-    bool replaced; /* by a sphere's own colour */
+    bool replaced; /* by a shape's own colour */
 } Scattered;
 
 static Scattered scattered_by(const BpMaterial *material) {
@@ -498,24 +498,23 @@ typedef struct Slots {
 
 #define SLOT_CHUNK 64u
 
-/* Spheres are asked in the order of the tree, so this mostly waits for memory. First all spheres of the chunk
+/* Shapes are asked in the order of the tree, so this mostly waits for memory. First all shapes of the chunk
  * are looked up, then all colours: no look-up waits for the one before. */
 static void pack_slot_chunk(const Slots *slots, size_t first, size_t count) {
     const BpScene *scene = slots->scene;
     BpPacked *packed = slots->packed;
-    const uint32_t *spheres = packed->tree.slot_sphere + first;
+    const uint32_t *shapes = packed->tree.slot_sphere + first;
     uint32_t materials[SLOT_CHUNK], albedos[SLOT_CHUNK];
     for (size_t s = 0; s < count; ++s) {
-        const bool used = spheres[s] != NO_SPHERE, is_sphere = spheres[s] < scene->sphere_count;
-        materials[s] = used ? bp_shape_material(scene, spheres[s]) : 0;
-        albedos[s] = is_sphere ? scene->spheres[spheres[s]].albedo : BP_NO_ALBEDO;
+        const bool used = shapes[s] != NO_SPHERE;
+        materials[s] = used ? bp_shape_material(scene, shapes[s]) : 0;
+        albedos[s] = used ? bp_shape_albedo(scene, shapes[s]) : BP_NO_ALBEDO;
     }
     static const Scattered nothing;
     for (size_t s = 0; s < count; ++s) {
-        const bool used = spheres[s] != NO_SPHERE, is_sphere = spheres[s] < scene->sphere_count;
+        const bool used = shapes[s] != NO_SPHERE;
         const Scattered *scattered = used ? &slots->scattered[materials[s]] : &nothing;
-        const bool second =
-            is_sphere && slots->second[materials[s]] != 0 && is_second(scene, &scene->spheres[spheres[s]]);
+        const bool second = used && slots->second[materials[s]] != 0 && is_second(scene, shapes[s]);
         packed->slot_material[first + s] = second ? slots->second[materials[s]] : materials[s];
         const float *own =
             scattered->replaced && albedos[s] != BP_NO_ALBEDO ? scene->albedos[albedos[s]] : NULL;

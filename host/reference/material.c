@@ -2,9 +2,11 @@
 #include "trace.h"
 
 static Vec albedo_of(const BpScene *scene, const Hit *hit) {
-    if (hit->sphere == NULL || hit->sphere->albedo == BP_NO_ALBEDO)
-        return bp_ref_varied(scene, hit, BP_MEMBER_ALBEDO, hit->material->albedo);
-    const float *albedo = scene->albedos[hit->sphere->albedo];
+    const uint32_t own = hit->sphere != NULL     ? hit->sphere->albedo
+                         : hit->triangle != NULL ? hit->triangle->albedo
+                                                 : BP_NO_ALBEDO;
+    if (own == BP_NO_ALBEDO) return bp_ref_varied(scene, hit, BP_MEMBER_ALBEDO, hit->material->albedo);
+    const float *albedo = scene->albedos[own];
     return (Vec){albedo[0], albedo[1], albedo[2]};
 }
 

@@ -145,6 +145,14 @@ BpStatus bp_scene_create_empty(const char *path, BpScene **scene, BpError *err) 
     return BP_OK;
 }
 
+static void free_files(BpShapeFile *files, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        free(files[i].file);
+        free(files[i].entry);
+    }
+    free(files);
+}
+
 void bp_scene_destroy(BpScene **scene) {
     if (scene == NULL || *scene == NULL) return;
     BpScene *s = *scene;
@@ -161,11 +169,8 @@ void bp_scene_destroy(BpScene **scene) {
     for (size_t i = 0; i < s->medium_count; i++) free(s->media[i].name);
     free(s->media);
     free(s->albedos);
-    for (size_t i = 0; i < s->point_file_count; i++) {
-        free(s->point_files[i].file);
-        free(s->point_files[i].particles);
-    }
-    free(s->point_files);
+    free_files(s->point_files, s->point_file_count);
+    free_files(s->mesh_files, s->mesh_file_count);
     free(s->path);
     free(s->title);
     free(s->source);
@@ -190,27 +195,40 @@ BpStatus bp_scene_note(BpScene *scene, const char *file, const char *text, BpErr
     return BP_OK;
 }
 
+/* The one that a shape comes from, or NULL. */
+static const BpShapeFile *file_of(const BpShapeFile *files, size_t count, size_t shape) {
+    const BpShapeFile *found = NULL;
+    for (size_t i = 0; i < count && files[i].first <= shape; i++) found = &files[i];
+    return found;
+}
+
 const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPHERE_NAME_SIZE]) {
-    const BpPointFile *cloud = NULL;
+    const BpShapeFile *cloud = file_of(scene->point_files, scene->point_file_count, sphere);
     char file[64];
-    for (size_t i = 0; i < scene->point_file_count && scene->point_files[i].first <= sphere; i++)
-        cloud = &scene->point_files[i];
     if (cloud == NULL) {
         snprintf(text, BP_SPHERE_NAME_SIZE, "spheres[%zu]", sphere);
     } else {
         bp_printable(cloud->file, file, sizeof file);
         snprintf(text, BP_SPHERE_NAME_SIZE, "%s %zu (from 0) of %s",
-                 cloud->particles != NULL || cloud->in_memory ? "sphere" : "vertex", sphere - cloud->first,
-                 file);
+                 cloud->entry != NULL || cloud->in_memory ? "sphere" : "vertex", sphere - cloud->first, file);
     }
     return text;
+}
+
+size_t bp_scene_listed_triangles(const BpScene *scene) {
+    return scene->mesh_file_count > 0 ? scene->mesh_files[0].first : scene->triangle_count;
 }
 
 const char *bp_triangle_name(const BpScene *scene, size_t triangle, char text[BP_SPHERE_NAME_SIZE]) {
     const size_t of_boxes = scene->box_count * BP_BOX_TRIANGLES,
                  of_quads = scene->quad_count * BP_QUAD_TRIANGLES;
-    const size_t listed = scene->triangle_count - of_boxes - of_quads;
-    if (triangle < listed)
+    const size_t listed = bp_scene_listed_triangles(scene) - of_boxes - of_quads;
+    const BpShapeFile *mesh = file_of(scene->mesh_files, scene->mesh_file_count, triangle);
+    char file[64];
+    if (mesh != NULL) {
+        bp_printable(mesh->file, file, sizeof file);
+        snprintf(text, BP_SPHERE_NAME_SIZE, "triangle %zu (from 0) of %s", triangle - mesh->first, file);
+    } else if (triangle < listed)
         snprintf(text, BP_SPHERE_NAME_SIZE, "triangles[%zu]", triangle);
     else if (triangle < listed + of_quads)
         snprintf(text, BP_SPHERE_NAME_SIZE, "quads[%zu]", (triangle - listed) / BP_QUAD_TRIANGLES);

@@ -69,6 +69,7 @@ typedef struct BpSphere {
 typedef struct BpTriangle {
     double vertices[3][3];
     uint32_t material; /* into materials[] */
+    uint32_t albedo;   /* as of a sphere */
 } BpTriangle;
 
 #define BP_QUAD_TRIANGLES 2u
@@ -146,14 +147,14 @@ typedef enum BpLighting {
     BP_LIGHTING_COUNT
 } BpLighting;
 
-/* A file of points: spheres from `first` on, up to the next file's or the end, one a vertex; of particles,
- * those that are shown, then the beads of bonds and cell. */
-typedef struct BpPointFile {
+/* A file of shapes: those from `first` on, up to the next file's or the end. Of a cloud one sphere a vertex;
+ * of particles those that are shown, then the beads of bonds and cell; of a mesh triangles. */
+typedef struct BpShapeFile {
     char *file; /* as the scene names it */
     size_t first;
-    char *particles; /* NULL for a cloud; else the entry of "particles", as JSON */
-    bool in_memory;  /* no file: a set of spheres that the caller handed over, whose name `file` is */
-} BpPointFile;
+    char *entry;    /* NULL for a cloud; else that of "particles" or "meshes", as JSON */
+    bool in_memory; /* no file: a set that the caller handed over, whose name `file` is */
+} BpShapeFile;
 
 /* The legend of particles that are coloured by a column. */
 typedef struct BpLegend {
@@ -194,11 +195,13 @@ struct BpScene {
     size_t moving_count;      /* 0: no sphere moves */
     uint32_t *interiors; /* of the first interior_count spheres: what fills them, counted as `medium` is */
     size_t interior_count;
-    BpTriangle *triangles; /* those that are listed, then those of quads, then those of boxes */
+    BpTriangle *triangles; /* those that are listed, then those of quads, of boxes and of meshes */
     size_t triangle_count, quad_count, box_count;
-    float (*albedos)[3]; /* linear, in [0,1]; of cloud points that bring their own colour */
+    BpShapeFile *mesh_files; /* in the order of their triangles */
+    size_t mesh_file_count;
+    float (*albedos)[3]; /* linear, in [0,1]; of points and triangles that bring their own colour */
     size_t albedo_count;
-    BpPointFile *point_files; /* in the order of their spheres, which follow all others */
+    BpShapeFile *point_files; /* in the order of their spheres, which follow all others */
     size_t point_file_count;
     size_t particle_first;    /* the spheres from here on come from "particles"; with sphere_count 0: 0 */
     size_t implicit_material; /* of particles that name none: into materials[]; SIZE_MAX: there is none */
@@ -247,16 +250,25 @@ BpStatus bp_scene_create_empty(const char *path, BpScene **scene, BpError *err);
 /* How a message names a sphere: "spheres[3]", or "vertex 12 (from 0) of points.ply". Returns `text`. */
 const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPHERE_NAME_SIZE]);
 
-/* The same of a triangle: "triangles[3]", or "quads[0]" or "boxes[1]", which it is part of. */
+/* The same of a triangle: "triangles[3]", or "quads[0]" or "boxes[1]", which it is part of, or "triangle 12
+ * (from 0) of bunny.ply", counted without those that were left out. */
 const char *bp_triangle_name(const BpScene *scene, size_t triangle, char text[BP_SPHERE_NAME_SIZE]);
 
-/* Shapes are the spheres, then the triangles: how many, and the material of one, into materials[]. */
+/* The triangles that stand in the scene itself; those of meshes follow. */
+size_t bp_scene_listed_triangles(const BpScene *scene);
+
+/* Shapes are the spheres, then the triangles: how many, the material of one, into materials[], and its own
+ * albedo, into albedos[], or BP_NO_ALBEDO. */
 static inline size_t bp_scene_shapes(const BpScene *scene) {
     return scene->sphere_count + scene->triangle_count;
 }
 static inline uint32_t bp_shape_material(const BpScene *scene, size_t shape) {
     return shape < scene->sphere_count ? scene->spheres[shape].material
                                        : scene->triangles[shape - scene->sphere_count].material;
+}
+static inline uint32_t bp_shape_albedo(const BpScene *scene, size_t shape) {
+    return shape < scene->sphere_count ? scene->spheres[shape].albedo
+                                       : scene->triangles[shape - scene->sphere_count].albedo;
 }
 const char *bp_shape_name(const BpScene *scene, size_t shape, char text[BP_SPHERE_NAME_SIZE]);
 /* "sphere", "triangle", or "shape" where there are both. */

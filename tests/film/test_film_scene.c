@@ -209,6 +209,11 @@ static void the_hash_keeps_to_the_meaning(void **state) {
     free_scene(&scene);
 }
 
+/* One triangle; of a material in the first variant, of a colour of its own in the second. */
+static BpTriangle triangles[2] = {
+    {.vertices = {{0, 0, -1}, {1, 0, -1}, {0, 1, -1}}, .material = 5, .albedo = BP_NO_ALBEDO},
+    {.vertices = {{0, 0, -1}, {1, 0, -1}, {0, 1, -1}}, .material = 5, .albedo = 1}};
+
 static void the_hash_sees_every_change(void **state) {
     (void)state;
     uint64_t seen[64];
@@ -237,6 +242,9 @@ static void the_hash_sees_every_change(void **state) {
     SEEN(scene.camera.pixel_sampling = BP_PIXEL_CENTER);
     SEEN(scene.background_bottom[1] = 0.5);
     SEEN(scene.background_top[1] = 0.5);
+    SEEN((scene.triangles = &triangles[0], scene.triangle_count = 1));
+    SEEN((scene.triangles = &triangles[1], scene.triangle_count = 1));
+    SEEN((scene.triangles = &triangles[0], scene.triangle_count = 1, scene.materials[5].albedo[1] = 0.5));
     SEEN((scene.discs[0] = disc(1, 0, 10, 100), scene.disc_count = 1));
     SEEN((scene.discs[0] = disc(1, 1, 10, 100), scene.disc_count = 1));
     SEEN((scene.discs[0] = disc(1, 0, 11, 100), scene.disc_count = 1));

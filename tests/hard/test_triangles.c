@@ -102,6 +102,7 @@ static void finish(Mesh *mesh, double rough, double size, double far, uint64_t *
     }
     for (size_t f = 0; f < mesh->face_count; ++f) {
         double u[3], v[3];
+        mesh->triangles[f].albedo = BP_NO_ALBEDO;
         for (int k = 0; k < 3; ++k)
             memcpy(mesh->triangles[f].vertices[k], mesh->vertices[mesh->faces[f][k]],
                    sizeof mesh->vertices[0]);

@@ -240,7 +240,10 @@ static inline void effects_triangles(EffectsScene *made) {
                                        {{2, -0.4, -4}, {2, -0.4, -2}, {2.5, 1.2, -3}}};
     made->scene.triangles = made->triangles;
     made->scene.triangle_count = 4;
-    for (int i = 0; i < 4; ++i) memcpy(made->triangles[i].vertices, at[i], sizeof at[i]);
+    for (int i = 0; i < 4; ++i) {
+        memcpy(made->triangles[i].vertices, at[i], sizeof at[i]);
+        made->triangles[i].albedo = BP_NO_ALBEDO;
+    }
 }
 
 /* Media in most of what light passes through, and around all in every fifth set. */
