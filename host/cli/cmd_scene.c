@@ -26,8 +26,8 @@ static bool same_folder(const char *from, const char *to) {
     return length == folder_length(to) && strncmp(from, to, length) == 0;
 }
 
-/* The names of images and of files of particles as seen from the folder of `to`: unchanged, below that
- * folder, or absolute.
+/* The names of images and of files of particles and meshes as seen from the folder of `to`: unchanged, below
+ * that folder, or absolute.
  */
 static BpStatus move_files(BpScene *scene, const char *from, const char *to, BpError *err) {
     if (same_folder(from, to)) return BP_OK;
@@ -36,6 +36,8 @@ static BpStatus move_files(BpScene *scene, const char *from, const char *to, BpE
         if (scene->point_files[i].entry == NULL) continue;
         BP_TRY(bp_shape_file_move(from, to, &scene->point_files[i], err));
     }
+    for (size_t i = 0; i < scene->mesh_file_count; i++)
+        BP_TRY(bp_shape_file_move(from, to, &scene->mesh_files[i], err));
     return BP_OK;
 }
 

@@ -12,6 +12,18 @@ static BpStatus fail_member(const BpNode *object, const char *member, const char
     return bp_node_fail(object, BP_PART_VALUE, err, "%s: %s", member, text);
 }
 
+/* A triangle of a mesh, which comes from a file or stands in no document. */
+static BpStatus refuse_mesh(const BpNode *root, const BpScene *scene, const BpFault *fault, BpError *err) {
+    char name[BP_SPHERE_NAME_SIZE];
+    size_t mesh = 0;
+    while (mesh + 1 < scene->mesh_file_count && scene->mesh_files[mesh + 1].first <= fault->index) mesh++;
+    if (scene->mesh_files[mesh].in_memory) return bp_scene_validate(scene, err);
+    const BpNode meshes = bp_node_member(root, "meshes"), entry = bp_node_element(&meshes, mesh),
+                 member = bp_node_member(&entry, fault->member);
+    return bp_node_fail(member.value != NULL ? &member : &entry, BP_PART_VALUE, err, "%s: %s",
+                        bp_triangle_name(scene, fault->index, name), fault->text);
+}
+
 BpStatus bp_refuse_faults(const BpNode *root, const BpScene *scene, BpError *err) {
     BpFault fault;
     BP_TRY(bp_scene_find_fault(scene, &fault, err));
@@ -72,6 +84,7 @@ BpStatus bp_refuse_faults(const BpNode *root, const BpScene *scene, BpError *err
         const size_t written = json_array_size(triangles.value),
                      of_quads = BP_QUAD_TRIANGLES * scene->quad_count;
         const size_t i = fault.index;
+        if (i >= bp_scene_listed_triangles(scene)) return refuse_mesh(root, scene, &fault, err);
         const BpNode shape = i < written ? bp_node_element(&triangles, i)
                              : i < written + of_quads
                                  ? bp_node_element(&quads, (i - written) / BP_QUAD_TRIANGLES)

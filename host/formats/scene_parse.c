@@ -8,6 +8,7 @@
 #include "scene_fit.h"
 #include "scene_material.h"
 #include "scene_medium.h"
+#include "scene_meshes.h"
 #include "scene_particles.h"
 #include "scene_points.h"
 #include "scene_sets.h"
@@ -88,26 +89,25 @@ static BpStatus choose_fresnel(const BpSceneChanges *changes, BpScene *scene, Bp
 
 /* Other programs have more shapes. */
 static BpStatus refuse_other_shapes(const BpNode *root, BpError *err) {
-    static const char *const shapes[] = {"triangle", "quad",    "box",        "cubes",     "meshes",
-                                         "mesh",     "planes",  "plane",      "cylinders", "cones",
-                                         "disks",    "shapes",  "primitives", "polygons",  "vertices",
-                                         "faces",    "objects", "world",      "geometry"};
+    static const char *const shapes[] = {"triangle", "quad",      "box",   "cubes",   "mesh",   "planes",
+                                         "plane",    "cylinders", "cones", "disks",   "shapes", "primitives",
+                                         "polygons", "vertices",  "faces", "objects", "world",  "geometry"};
     for (size_t i = 0; i < BP_COUNT(shapes); i++) {
         const BpNode shape = bp_node_member(root, shapes[i]);
         if (shape.value != NULL)
-            return bp_node_fail(
-                &shape, BP_PART_NAME, err,
-                "unknown member; shapes are written in \"spheres\", \"triangles\", \"quads\" and \"boxes\", "
-                "and files of spheres named in \"clouds\" or \"particles\"");
+            return bp_node_fail(&shape, BP_PART_NAME, err,
+                                "unknown member; shapes are written in \"spheres\", \"triangles\", \"quads\" "
+                                "and \"boxes\", and files of "
+                                "them named in \"clouds\", \"particles\" or \"meshes\"");
     }
     return BP_OK;
 }
 
 BpStatus bp_parse_scene(const BpNode *root, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"format",   "title",          "source",    "camera",   "background",
-                                        "backdrop", "lighting",       "transfer",  "textures", "materials",
-                                        "spheres",  "clouds",         "particles", "$schema",  "media",
-                                        "medium",   "shadow_catcher", "triangles", "quads",    "boxes"};
+    static const char *const names[] = {
+        "format",   "title",    "source",         "camera",    "background", "backdrop",  "lighting",
+        "transfer", "textures", "materials",      "spheres",   "clouds",     "particles", "$schema",
+        "media",    "medium",   "shadow_catcher", "triangles", "quads",      "boxes",     "meshes"};
     BP_TRY(refuse_other_shapes(root, err));
     const BpNode former = bp_node_member(root, "light");
     if (former.value != NULL)
@@ -123,6 +123,7 @@ BpStatus bp_parse_scene(const BpNode *root, const BpSceneChanges *changes, BpSce
     const BpNode spheres = bp_node_member(root, "spheres");
     const BpNode clouds = bp_node_member(root, "clouds");
     const BpNode particles = bp_node_member(root, "particles");
+    const BpNode meshes = bp_node_member(root, "meshes");
     const BpNode media = bp_node_member(root, "media");
     const BpNode medium = bp_node_member(root, "medium");
     BP_TRY(bp_parse_camera(&camera, &scene->camera, err));
@@ -144,6 +145,7 @@ BpStatus bp_parse_scene(const BpNode *root, const BpSceneChanges *changes, BpSce
     BpStatus status = bp_material_index_create(scene, &index, err);
     if (status == BP_OK) status = bp_parse_spheres(&spheres, &index, scene, err);
     if (status == BP_OK) status = bp_parse_triangles(root, &index, scene, err);
+    if (status == BP_OK) status = bp_parse_meshes(&meshes, &index, changes, scene, err);
     if (status == BP_OK) status = bp_parse_clouds(&clouds, &index, changes->flags, scene, err);
     if (status == BP_OK) status = bp_parse_particles(&particles, &index, changes, scene, err);
     if (status == BP_OK) status = bp_add_sphere_sets(&index, changes, scene, err);

@@ -1,11 +1,11 @@
 /* scene_triangles.c: see scene_triangles.h. */
 #include "scene_triangles.h"
 
+#include "scene/placement.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 /* `count` points. */
 static BpStatus parse_points(const BpNode *node, size_t count, const char *expected, double (*points)[3],
@@ -71,28 +71,6 @@ static BpStatus parse_quad(const BpNode *node, const BpMaterialIndex *index, BpT
     return BP_OK;
 }
 
-/* Quarter turns are exact, so that a box turned by them stays parallel to the axes. */
-static void turn(double degrees, double *sine, double *cosine) {
-    const double quarters = degrees / 90;
-    *sine = sin(degrees * (PI / 180));
-    *cosine = cos(degrees * (PI / 180));
-    if (quarters != floor(quarters)) return;
-    *sine = round(*sine);
-    *cosine = round(*cosine);
-}
-
-/* About x, then y, then z. */
-static void rotate(const double degrees[3], double point[3]) {
-    for (int axis = 0; axis < 3; axis++) {
-        double sine, cosine;
-        turn(degrees[axis], &sine, &cosine);
-        const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-        const double x = point[a], y = point[b];
-        point[a] = cosine * x - sine * y;
-        point[b] = sine * x + cosine * y;
-    }
-}
-
 static BpStatus parse_box(const BpNode *node, const BpMaterialIndex *index, BpTriangle *triangles,
                           BpError *err) {
     static const char *const names[] = {"corners", "rotate", "translate", "material"};
@@ -110,12 +88,12 @@ static BpStatus parse_box(const BpNode *node, const BpMaterialIndex *index, BpTr
     BP_TRY(bp_node_vector(&turned, degrees, err));
     BP_TRY(bp_node_vector(&moved, way, err));
     BP_TRY(parse_material(node, index, &material, err));
+    const BpPlacement placement = bp_placement((const double[3]){1, 1, 1}, degrees, way);
     for (int corner = 0; corner < 8; corner++) {
         for (int a = 0; a < 3; a++)
             at[corner][a] =
                 (corner >> a & 1) != 0 ? fmax(ends[0][a], ends[1][a]) : fmin(ends[0][a], ends[1][a]);
-        rotate(degrees, at[corner]);
-        for (int a = 0; a < 3; a++) at[corner][a] += way[a];
+        bp_place_point(&placement, at[corner]);
     }
     for (int side = 0; side < 6; side++) {
         const int *c = sides[side];

@@ -401,10 +401,19 @@ static BpStatus put_spheres(FILE *out, const BpScene *scene, BpError *err) {
     return BP_OK;
 }
 
+static void put_meshes(FILE *out, const BpScene *scene) {
+    fputs(",\n  \"meshes\": [", out);
+    for (size_t i = 0; i < scene->mesh_file_count; i++) {
+        fputs(i > 0 ? ",\n    " : "\n    ", out);
+        bp_print_json_escaped(scene->mesh_files[i].entry, out);
+    }
+    fputs("\n  ]", out);
+}
+
 /* Those of quads and boxes too, since their vertices have been computed. */
 static BpStatus put_triangles(FILE *out, const BpScene *scene, BpError *err) {
     fputs(",\n  \"triangles\": [", out);
-    for (size_t i = 0; i < scene->triangle_count; i++) {
+    for (size_t i = 0; i < bp_scene_listed_triangles(scene); i++) {
         const BpTriangle *triangle = &scene->triangles[i];
         fputs(i > 0 ? ",\n    { \"vertices\": [" : "\n    { \"vertices\": [", out);
         for (int k = 0; k < 3; k++) {
@@ -446,7 +455,8 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     if (scene->medium_count > 0) BP_TRY(put_media(out, scene, err));
     if (written_materials(scene) > 0) BP_TRY(put_materials(out, scene, err));
     if (written_spheres(scene) > 0) BP_TRY(put_spheres(out, scene, err));
-    if (scene->triangle_count > 0) BP_TRY(put_triangles(out, scene, err));
+    if (bp_scene_listed_triangles(scene) > 0) BP_TRY(put_triangles(out, scene, err));
+    if (scene->mesh_file_count > 0) put_meshes(out, scene);
     if (scene->has_particles) put_particles(out, scene);
     fputs("\n}\n", out);
     if (ferror(out)) return bp_fail(err, BP_ERR_FILE, "cannot write the scene: %s", strerror(errno));

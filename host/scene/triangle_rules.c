@@ -27,8 +27,13 @@ static double area_of(const BpTriangle *triangle, double area[3]) {
     return fmax(fmax(bp_length(b), bp_length(c)), bp_length(d));
 }
 
-static bool place_fault(const BpTriangle *triangle, BpFault *fault) {
+bool bp_triangle_has_area(const BpTriangle *triangle) {
     double area[3];
+    const double longest = area_of(triangle, area);
+    return bp_length(area) > LEAST_AREA * longest * longest && longest >= BP_TRIANGLE_SIDE_MIN;
+}
+
+static bool place_fault(const BpTriangle *triangle, BpFault *fault) {
     for (int k = 0; k < 3; k++)
         for (int a = 0; a < 3; a++)
             if (!(fabs(triangle->vertices[k][a]) <= BP_VERTEX_MAX)) {
@@ -38,8 +43,7 @@ static bool place_fault(const BpTriangle *triangle, BpFault *fault) {
                                     "larger unit of length",
                                     bp_number_text(triangle->vertices[k][a], text));
             }
-    const double longest = area_of(triangle, area);
-    if (bp_length(area) > LEAST_AREA * longest * longest && longest >= BP_TRIANGLE_SIDE_MIN) return false;
+    if (bp_triangle_has_area(triangle)) return false;
     return bp_fault_set(
         fault, BP_FAULT_TRIANGLE, "vertices",
         "found a triangle without an area, expected three points that are not in one line, at "
@@ -101,13 +105,13 @@ static bool is_glass(const BpScene *scene, size_t triangle) {
     return bp_material_is(scene->materials[scene->triangles[triangle].material].kind, BP_HAS_INSIDE);
 }
 
-/* Each edge is there as often one way as the other. */
+/* Each edge is there as often one way as the other. Meshes have been looked at when they were read. */
 static BpStatus find_open_edge(const BpScene *scene, size_t glass, BpFault *fault, BpError *err) {
     Edge *edges = malloc(3 * glass * sizeof *edges);
     size_t count = 0;
     if (edges == NULL)
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for the edges of %zu triangles", glass);
-    for (size_t i = 0; i < scene->triangle_count; i++) {
+    for (size_t i = 0; i < bp_scene_listed_triangles(scene); i++) {
         if (!is_glass(scene, i)) continue;
         for (int k = 0; k < 3; k++) {
             const double *from = scene->triangles[i].vertices[k],
@@ -245,7 +249,8 @@ static bool holds_point(const BpTriangle *triangle, const double point[3]) {
 BpStatus bp_scene_find_triangle_fault(const BpScene *scene, BpFault *fault, BpError *err) {
     const BpCamera *camera = &scene->camera;
     const bool pinhole = camera->lens_radius == 0 && camera->projection == BP_PERSPECTIVE;
-    size_t glass = 0;
+    const size_t listed = bp_scene_listed_triangles(scene);
+    size_t glass = 0, listed_glass = 0;
     for (size_t i = 0; i < scene->triangle_count; i++) {
         fault->index = i;
         if (scene->triangles[i].material >= scene->material_count) {
@@ -256,6 +261,7 @@ BpStatus bp_scene_find_triangle_fault(const BpScene *scene, BpFault *fault, BpEr
         }
         if (place_fault(&scene->triangles[i], fault) || kind_fault(scene, i, fault)) return BP_OK;
         glass += is_glass(scene, i);
+        listed_glass += is_glass(scene, i) && i < listed;
         if (pinhole && holds_point(&scene->triangles[i], camera->lookfrom)) {
             char name[BP_SPHERE_NAME_SIZE];
             bp_fault_set(fault, BP_FAULT_TRIANGLE, "",
@@ -265,6 +271,6 @@ BpStatus bp_scene_find_triangle_fault(const BpScene *scene, BpFault *fault, BpEr
         }
     }
     if (glass == 0) return BP_OK;
-    BP_TRY(find_open_edge(scene, glass, fault, err));
+    if (listed_glass > 0) BP_TRY(find_open_edge(scene, listed_glass, fault, err));
     return fault->subject == BP_FAULT_NONE ? find_overlap(scene, fault, err) : BP_OK;
 }

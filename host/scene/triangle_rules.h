@@ -7,6 +7,9 @@
 
 #include "scene_fault.h"
 
+/* Whether it is one: neither without an area nor too small. */
+bool bp_triangle_has_area(const BpTriangle *triangle);
+
 /* Vertices are finite and near enough, areas are not 0, and materials are ones that triangles may have; glass
  * is closed, and no other triangle lies on it; no pinhole camera stands on one. BP_ERR_MEMORY. */
 BpStatus bp_scene_find_triangle_fault(const BpScene *scene, BpFault *fault, BpError *err);

@@ -70,9 +70,9 @@ class Messages(ProgramTest):
             self.refused(text, place, says)
 
     def test_shapes(self):
-        for name in ("triangle", "box", "meshes", "mesh", "cylinders", "planes"):
+        for name in ("triangle", "box", "mesh", "cylinders", "planes"):
             said = self.refused('{"camera": {},\n "%s": []}' % name, "2:2", f"{name}: unknown member; shapes are written in")
-            self.assertIn('"spheres", "triangles", "quads" and "boxes", and files of spheres named in "clouds" or "particles"', said)
+            self.assertIn('"spheres", "triangles", "quads" and "boxes", and files of them named in "clouds", "particles" or "meshes"', said)
 
     def test_a_former_name(self):
         self.refused('{"camera": {}, "light": "soft"}', "1:16", 'light: unknown member; "light" is now "lighting"')

@@ -70,13 +70,16 @@ BpStatus bp_file_conflicts_check_scene(const BpCommandLine *line, const char *pi
     Result results[RESULTS];
     BpStatus status = BP_OK;
     list_results(line, picture, results);
-    for (size_t c = 0; c < scene->point_file_count && status == BP_OK; ++c) {
-        char *points = bp_path_beside(scene->path, scene->point_files[c].file);
-        if (points == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a path");
+    for (size_t c = 0; c < scene->point_file_count + scene->mesh_file_count && status == BP_OK; ++c) {
+        const bool is_mesh = c >= scene->point_file_count;
+        const BpShapeFile *file =
+            is_mesh ? &scene->mesh_files[c - scene->point_file_count] : &scene->point_files[c];
+        char *path = bp_path_beside(scene->path, file->file);
+        if (path == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a path");
         for (size_t r = 0; r < RESULTS && status == BP_OK; ++r)
-            if (results[r].path != NULL && bp_output_same(results[r].path, points, STDIN_FILENO))
-                status = refuse(&results[r], "points of the scene", err);
-        free(points);
+            if (results[r].path != NULL && bp_output_same(results[r].path, path, STDIN_FILENO))
+                status = refuse(&results[r], is_mesh ? "a mesh of the scene" : "points of the scene", err);
+        free(path);
     }
     return status;
 }

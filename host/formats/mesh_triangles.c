@@ -1,0 +1,173 @@
+/* mesh_triangles.c: see mesh_triangles.h. */
+#include "mesh_triangles.h"
+
+#include "base/format.h"
+#include "base/plural.h"
+#include "scene/material.h"
+#include "scene/triangle_rules.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Into the scene's materials, or UINT32_MAX. */
+static uint32_t material_of(const BpMesh *mesh, const BpMeshUse *use, size_t face) {
+    const uint32_t own = mesh->face_material != NULL ? mesh->face_material[face] : BP_MESH_NO_MATERIAL;
+    const bool named = own != BP_MESH_NO_MATERIAL && use->materials != NULL;
+    return named && use->materials[own] != UINT32_MAX ? use->materials[own] : use->material;
+}
+
+static BpStatus check_materials(const BpMesh *mesh, const BpMeshUse *use, BpError *err) {
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        if (material_of(mesh, use, f) != UINT32_MAX) continue;
+        const uint32_t own = mesh->face_material != NULL ? mesh->face_material[f] : BP_MESH_NO_MATERIAL;
+        if (own == BP_MESH_NO_MATERIAL)
+            return bp_fail(
+                err, BP_ERR_SCENE,
+                "%s: found triangle %zu (from 0) without a material of its own, expected one, or a "
+                "\"material\" for all that have none",
+                use->name, f);
+        return bp_fail(
+            err, BP_ERR_SCENE,
+            "%s: found the material \"%.80s\", expected it in \"materials\", or a \"material\" for "
+            "all that are not there",
+            use->name, mesh->materials[own].name);
+    }
+    return BP_OK;
+}
+
+/* ---- glass is closed ---- */
+
+static BpStatus refuse_edge(const BpMesh *mesh, const BpMeshUse *use, const BpMeshEdge *edge,
+                            const char *material, BpError *err) {
+    const double *a = mesh->positions[edge->vertices[0]], *b = mesh->positions[edge->vertices[1]];
+    return bp_fail(
+        err, BP_ERR_SCENE,
+        "%s: the material \"%.80s\" lets light in, but the edge from vertex %u to %u (from 0), (%.9g, "
+        "%.9g, %.9g) to (%.9g, %.9g, %.9g), is open: %s; expected faces that enclose a body and run "
+        "counter-clockwise, seen from outside; close the mesh, MeshLab and pymeshfix can, or give it "
+        "another material",
+        use->name, material, (unsigned)edge->vertices[0], (unsigned)edge->vertices[1], a[0], a[1], a[2], b[0],
+        b[1], b[2], bp_mesh_edge_fault_text(edge->fault));
+}
+
+/* Of the faces with one material. */
+static BpStatus check_closed(const BpMesh *mesh, const BpMeshUse *use, uint32_t material,
+                             const BpScene *scene, BpError *err) {
+    BpMesh part = {.positions = mesh->positions, .vertex_count = mesh->vertex_count};
+    BpMeshEdge edge;
+    part.faces = malloc(mesh->face_count * sizeof *part.faces);
+    if (part.faces == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu triangles", mesh->face_count);
+    for (size_t f = 0; f < mesh->face_count; f++)
+        if (material_of(mesh, use, f) == material)
+            memcpy(part.faces[part.face_count++], mesh->faces[f], sizeof *part.faces);
+    BpStatus status = bp_mesh_find_open_edge(&part, &edge, err);
+    if (status == BP_OK && edge.fault != BP_MESH_EDGE_GOOD)
+        status = refuse_edge(mesh, use, &edge, scene->materials[material].name, err);
+    free(part.faces);
+    return status;
+}
+
+static BpStatus check_glass(const BpMesh *mesh, const BpMeshUse *use, const BpScene *scene, BpError *err) {
+    bool *const used = calloc(scene->material_count + 1, sizeof *used);
+    if (used == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a mesh's materials");
+    BpStatus status = BP_OK;
+    for (size_t f = 0; f < mesh->face_count && status == BP_OK; f++) {
+        const uint32_t material = material_of(mesh, use, f);
+        if (used[material]) continue;
+        used[material] = true;
+        if (bp_material_is(scene->materials[material].kind, BP_HAS_INSIDE))
+            status = check_closed(mesh, use, material, scene, err);
+    }
+    free(used);
+    return status;
+}
+
+/* ---- triangles ---- */
+
+/* A triangle has one colour: its own, or the mean of its corners'. */
+static void put_color(const BpMesh *mesh, size_t face, float albedo[3]) {
+    if (mesh->face_colors != NULL) {
+        memcpy(albedo, mesh->face_colors[face], sizeof *mesh->face_colors);
+        return;
+    }
+    for (int c = 0; c < 3; c++) {
+        double sum = 0;
+        for (int k = 0; k < 3; k++) sum += (double)mesh->vertex_colors[mesh->faces[face][k]][c];
+        albedo[c] = (float)(sum / 3);
+    }
+}
+
+static BpStatus make_room(const BpMesh *mesh, const BpMeshUse *use, bool colored, BpScene *scene,
+                          BpError *err) {
+    if (mesh->face_count > BP_SPHERES_MAX - scene->triangle_count)
+        return bp_fail(err, BP_ERR_SCENE, "%s: found %zu triangles more, expected at most %u in a scene",
+                       use->name, mesh->face_count, BP_SPHERES_MAX);
+    const size_t count = scene->triangle_count + mesh->face_count;
+    BpTriangle *const triangles = realloc(scene->triangles, (count + 1) * sizeof *triangles);
+    if (triangles == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu triangles", count);
+    scene->triangles = triangles;
+    if (!colored) return BP_OK;
+    float(*const albedos)[3] =
+        realloc(scene->albedos, (scene->albedo_count + mesh->face_count + 1) * sizeof *albedos);
+    if (albedos == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu colours", mesh->face_count);
+    scene->albedos = albedos;
+    return BP_OK;
+}
+
+/* Returns how many were left out, since they have no area where they stand. */
+static size_t add_faces(const BpMesh *mesh, const BpMeshUse *use, bool colored, BpScene *scene,
+                        size_t *colors_used) {
+    const bool mirrored = bp_placement_mirrors(&use->placement);
+    const size_t first = scene->triangle_count;
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        BpTriangle *const triangle = &scene->triangles[scene->triangle_count];
+        for (int k = 0; k < 3; k++)
+            memcpy(triangle->vertices[k], mesh->positions[mesh->faces[f][mirrored && k > 0 ? 3 - k : k]],
+                   sizeof triangle->vertices[k]);
+        if (!bp_triangle_has_area(triangle)) continue;
+        triangle->material = material_of(mesh, use, f);
+        triangle->albedo = BP_NO_ALBEDO;
+        if (colored && bp_material_has(scene->materials[triangle->material].kind, BP_MEMBER_ALBEDO)) {
+            put_color(mesh, f, scene->albedos[scene->albedo_count]);
+            triangle->albedo = (uint32_t)scene->albedo_count++;
+            ++*colors_used;
+        }
+        scene->triangle_count++;
+    }
+    return mesh->face_count - (scene->triangle_count - first);
+}
+
+static BpStatus add_note(const BpMesh *mesh, const BpMeshUse *use, size_t left_out, size_t colors_used,
+                         BpScene *scene, BpError *err) {
+    char text[1024], vertices[32], triangles[32], out[32];
+    const size_t added = mesh->face_count - left_out, lost = mesh->dropped_degenerate + left_out;
+    size_t used = (size_t)snprintf(text, sizeof text, "%s vertices, %s triangle%s",
+                                   bp_format_whole(mesh->vertex_count, vertices, sizeof vertices),
+                                   bp_format_whole(added, triangles, sizeof triangles), bp_plural(added));
+    if (lost > 0)
+        used += (size_t)snprintf(text + used, sizeof text - used, "; %s without an area left out",
+                                 bp_format_whole(lost, out, sizeof out));
+    if (mesh->face_colors == NULL && mesh->vertex_colors != NULL && colors_used > 0)
+        used += (size_t)snprintf(text + used, sizeof text - used,
+                                 "; each triangle has the mean of the colours of its vertices");
+    if ((mesh->face_colors != NULL || mesh->vertex_colors != NULL) && colors_used < added)
+        used += (size_t)snprintf(
+            text + used, sizeof text - used,
+            "; %s triangle%s without the file's colours, since the material has no albedo",
+            bp_format_whole(added - colors_used, out, sizeof out), bp_plural(added - colors_used));
+    if (mesh->notes[0] != '\0') snprintf(text + used, sizeof text - used, "; %s", mesh->notes);
+    return bp_scene_note(scene, use->name, text, err);
+}
+
+BpStatus bp_mesh_add_triangles(BpMesh *mesh, const BpMeshUse *use, BpScene *scene, BpError *err) {
+    const bool colored = mesh->face_colors != NULL || mesh->vertex_colors != NULL;
+    size_t colors_used = 0;
+    BP_TRY(check_materials(mesh, use, err));
+    BP_TRY(check_glass(mesh, use, scene, err));
+    BP_TRY(make_room(mesh, use, colored, scene, err));
+    for (size_t v = 0; v < mesh->vertex_count; v++) bp_place_point(&use->placement, mesh->positions[v]);
+    const size_t left_out = add_faces(mesh, use, colored, scene, &colors_used);
+    return add_note(mesh, use, left_out, colors_used, scene, err);
+}

@@ -1,0 +1,235 @@
+"""Meshes in scenes, through the program: where they stand, their materials and colours, what is refused, and every command.
+
+Pictures are compared with those of boxes and triangles that stand in the scene itself, places with a transformation of this
+file's own.
+
+Run as: PYTHONPATH=tests/support python3 test_mesh_scenes.py PROGRAM SOURCE_DIR
+"""
+import json
+import math
+import os
+
+from cli import ProgramTest, main
+from pfm import read_pfm
+
+CORNERS = [[corner >> axis & 1 for axis in range(3)] for corner in range(8)]
+# As the program cuts a box, so that the triangles have the same numbers.
+SIDES = ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))
+CUBE = [face for a, b, c, d in SIDES for face in ((a, b, c), (a, c, d))]
+MATERIALS = {"clay": {"type": "lambertian", "albedo": [0.7, 0.4, 0.25]}, "glass": {"type": "dielectric", "refraction_index": 1.5},
+             "frost": {"type": "dielectric", "refraction_index": 1.5, "roughness": 0.3}, "skin": {"type": "interface"},
+             "normals": {"type": "normals"}, "steel": {"type": "metal", "albedo": [0.9, 0.9, 0.9], "fuzz": 0.1},
+             "mapped": {"type": "lambertian", "albedo": {"texture": "map"}}}
+TEXTURES = {"map": {"type": "checker", "mapping": "surface", "repeat": [4, 2], "colors": [[0.9, 0.9, 0.9], [0.1, 0.1, 0.1]]}}
+CAMERA = {"image_width": 48, "aspect_ratio": 1.5, "samples_per_pixel": 8, "max_depth": 10, "vfov": 35, "lookfrom": [4, 3, 5], "lookat": [0.5, 0.5, 0]}
+GROUND = {"center": [0, -100, 0], "radius": 99, "material": "clay"}
+
+
+def off(vertices, faces):
+    """Vertices of three numbers, or of three and a colour; faces likewise, of three corners."""
+    word = "COFF" if len(vertices[0]) > 3 else "OFF"
+    rows = [f"{len(face[:3])} " + " ".join(map(str, face)) for face in faces]
+    return "\n".join([word, f"{len(vertices)} {len(faces)} 0"] + [" ".join(map(str, v)) for v in vertices] + rows) + "\n"
+
+
+def placed(point, scale=(1, 1, 1), rotate=(0, 0, 0), translate=(0, 0, 0)):
+    """By matrices: the product of those about z, y and x, in this order, turns about x first."""
+    x, y, z = (math.radians(angle) for angle in rotate)
+    about_x = [[1, 0, 0], [0, math.cos(x), -math.sin(x)], [0, math.sin(x), math.cos(x)]]
+    about_y = [[math.cos(y), 0, math.sin(y)], [0, 1, 0], [-math.sin(y), 0, math.cos(y)]]
+    about_z = [[math.cos(z), -math.sin(z), 0], [math.sin(z), math.cos(z), 0], [0, 0, 1]]
+
+    def product(a, b):
+        return [[sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
+
+    matrix = product(about_z, product(about_y, about_x))
+    scaled = [point[i] * scale[i] for i in range(3)]
+    return [sum(matrix[i][j] * scaled[j] for j in range(3)) + translate[i] for i in range(3)]
+
+
+class Meshes(ProgramTest):
+    def scene(self, name, *meshes, **members):
+        camera = {**CAMERA, **members.pop("camera", {})}
+        self.write(name, {"camera": camera, "textures": TEXTURES, "materials": MATERIALS, "meshes": list(meshes), **members})
+        return name
+
+    def picture(self, name, *arguments, output="x.pfm"):
+        self.succeed("render", name, "-q", "-o", output, *arguments)
+        return self.read(output)
+
+    def numbers(self, name, *arguments):
+        return read_pfm(self.picture(name, *arguments))[2]
+
+    # ---- where a mesh stands ----
+
+    def test_as_a_box(self):
+        """A cube from a file and the box of the grammar are one picture, bit for bit."""
+        self.write("cube.off", off(CORNERS, CUBE))
+        where = {"rotate": [10, 25, 40], "translate": [0.1, 0.2, 0.3]}
+        for material in ("clay", "glass", "steel"):
+            mesh = self.scene("m.json", {"file": "cube.off", "material": material, **where}, spheres=[GROUND])
+            box = self.scene("b.json", spheres=[GROUND], boxes=[{"corners": [[0, 0, 0], [1, 1, 1]], "material": material, **where}])
+            self.assert_same(self.picture(mesh), self.picture(box), material)
+        self.assert_different(self.picture(box), self.picture(self.scene("e.json", spheres=[GROUND])))
+
+    def test_placement(self):
+        """Scaled, turned about x, y and z, moved, in this order."""
+        points = [[0.1, 0.2, -0.3], [1.3, 0.1, 0.2], [0.3, 0.9, 0.4], [0.2, 0.3, 1.7]]
+        faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+        self.write("p.off", off(points, faces))
+        for scale, rotate, translate in (((2, 2, 2), (0, 0, 0), (0, 0, 0)), ((1, 1, 1), (30, 0, 0), (0, 0, 0)), ((1, 1, 1), (0, 50, 0), (0, 0, 0)),
+                                         ((1, 1, 1), (0, 0, -70), (0, 0, 0)), ((1, 1, 1), (30, 50, -70), (0, 0, 0)),
+                                         ((0.5, 2, 3), (90, 180, 15), (1, -2, 3)), ((-1, 2, 1), (10, 20, 30), (5, 6, 7))):
+            mesh = {"file": "p.off", "material": "normals", "scale": list(scale), "rotate": list(rotate), "translate": list(translate)}
+            if len(set(scale)) == 1:
+                mesh["scale"] = scale[0]
+            there = [placed(point, scale, rotate, translate) for point in points]
+            mirrored = scale[0] < 0
+            listed = [{"vertices": [there[k] for k in (face[::-1] if mirrored else face)], "material": "normals"} for face in faces]
+            a = self.numbers(self.scene("m.json", mesh), "--fit", "--spp", 1)
+            b = self.numbers(self.scene("t.json", triangles=listed), "--fit", "--spp", 1)
+            apart = sum(abs(x - y) > 1e-4 for x, y in zip(a, b))
+            self.assertLess(apart, 12, f"normals, but for samples at a silhouette: {mesh}")
+            self.assertGreater(sum(x == y for x, y in zip(a, a[3:])), len(a) / 8, "faces are flat, and large in the picture")
+
+    def test_mirrored_glass(self):
+        """A mirror turns the winding, so that the outside stays outside: a mirrored cube of glass is a cube of glass."""
+        self.write("cube.off", off(CORNERS, CUBE))
+        mirrored = {"file": "cube.off", "material": "glass", "scale": [-1, 1, 1], "translate": [1, 0, 0]}
+        one = self.numbers(self.scene("m.json", mirrored, spheres=[GROUND]), "--spp", 64)
+        other = self.numbers(self.scene("b.json", {"file": "cube.off", "material": "glass"}, spheres=[GROUND]), "--spp", 64)
+        self.assertLess(sum(abs(a - b) for a, b in zip(one, other)) / sum(other), 0.05)
+
+    # ---- materials and colours ----
+
+    def obj(self):
+        rows = [f"v {x} {y} {z}" for x, y, z in CORNERS]
+        for k, (a, b, c) in enumerate(CUBE):
+            rows += {0: ["usemtl one"], 4: ["usemtl two"]}.get(k, []) + [f"f {a + 1} {b + 1} {c + 1}"]
+        return "\n".join(rows) + "\n"
+
+    def test_materials(self):
+        """Names of the file have materials of the scene; the others have "material"."""
+        self.write("cube.obj", self.obj())
+        triangles = [[CORNERS[k] for k in face] for face in CUBE]
+        for mesh, of_one, of_two in (({"materials": {"one": "clay", "two": "steel"}}, "clay", "steel"),
+                                     ({"materials": {"two": "steel"}, "material": "normals"}, "normals", "steel"), ({"material": "steel"}, "steel", "steel")):
+            one = self.scene("m.json", {"file": "cube.obj", **mesh}, spheres=[GROUND])
+            other = self.scene("t.json", spheres=[GROUND], triangles=[
+                {"vertices": corners, "material": of_one if k < 4 else of_two} for k, corners in enumerate(triangles)])
+            self.assert_same(self.picture(one), self.picture(other), mesh)
+        for materials, says in (({"one": "clay"}, 'found the material "two", expected it in "materials", or a "material"'),
+                                ({"one": "clay", "tow": "clay"}, 'meshes[0].materials.tow: found the material "tow"'),
+                                ({"one": "glass", "two": "clay"}, 'the material "glass" lets light in')):
+            self.fail_with(2, "render", self.scene("s.json", {"file": "cube.obj", "materials": materials}), says=[says])
+
+    def test_colors(self):
+        """A triangle has the colour of its face, or the mean of those of its vertices, which materials without an albedo pass over."""
+        red, blue = (1, 0, 0), (0, 0, 1)
+        faces = [(*face, *(255 * part for part in (red if k < 6 else blue))) for k, face in enumerate(CUBE)]
+        self.write("faces.off", off(CORNERS, faces))
+        self.write("vertices.off", off([(*corner, *(255 * part for part in (red if corner[0] else blue)), 255) for corner in CORNERS], CUBE))
+        materials = {**MATERIALS, **{f"c{share}": {"type": "lambertian", "albedo": [share / 3, 0, 1 - share / 3]} for share in range(4)}}
+        triangles = [[CORNERS[k] for k in face] for face in CUBE]
+        listed = [{"vertices": corners, "material": "c3" if k < 6 else "c0"} for k, corners in enumerate(triangles)]
+        mean = [{"vertices": corners, "material": f"c{sum(corner[0] for corner in corners)}"} for corners in triangles]
+        for name, same in (("faces.off", listed), ("vertices.off", mean)):
+            mesh = self.scene("m.json", {"file": name, "material": "clay"}, spheres=[GROUND])
+            by_hand = self.scene("t.json", triangles=same, spheres=[GROUND], materials=materials)
+            self.assert_same(self.picture(mesh), self.picture(by_hand), name)
+            self.scene("g.json", {"file": name, "material": "glass"})
+            self.assertIn("12 triangles without the file's colours, since the material has no albedo", self.succeed("scene", "g.json").errors)
+        self.assertIn("each triangle has the mean of the colours of its vertices",
+                      self.succeed("scene", self.scene("m.json", {"file": "vertices.off", "material": "clay"})).errors)
+
+    # ---- what is refused ----
+
+    def test_refused(self):
+        self.write("cube.off", off(CORNERS, CUBE))
+        for mesh, says in (({}, 'meshes[0]: found no "file"'), ({"file": "cube.off"}, 'found no "material"'),
+                           ({"file": "no.off", "material": "clay"}, 'meshes[0].file: "no.off": cannot open it'),
+                           ({"file": "cube.off", "material": "clya"}, 'did you mean "clay"?'),
+                           ({"file": "cube.off", "material": "clay", "scale": 0}, "meshes[0].scale: found 0, expected a number other than 0"),
+                           ({"file": "cube.off", "material": "clay", "scale": [1, 0, 1]}, "meshes[0].scale"),
+                           ({"file": "cube.off", "material": "clay", "rotate": 90}, "meshes[0].rotate"),
+                           ({"file": "cube.off", "material": "clay", "smooth": True}, "meshes[0].smooth: not for meshes"),
+                           ({"file": "cube.off", "material": "clay", "interior": "fog"}, "meshes[0].interior: not for meshes"),
+                           ({"file": "cube.off", "material": "clay", "motion": [0, 1, 0]}, "meshes[0].motion: not for meshes"),
+                           ({"file": "cube.off", "material": "clay", "colour": 1}, "meshes[0].colour: unknown member"),
+                           ({"file": "cube.off", "materials": {"bark": "clay"}}, 'meshes[0].materials.bark: found the material "bark"'),
+                           ({"file": "cube.off", "materials": {}}, "without a material of its own"),
+                           ({"file": "cube.off", "material": "skin"}, "meshes[0].material: triangle 0 (from 0) of cube.off"),
+                           ({"file": "cube.off", "material": "mapped"}, "laid around spheres"),
+                           ({"file": "cube.off", "material": "clay", "translate": [2e9, 0, 0]}, "meshes[0]: triangle 0 (from 0) of cube.off"),
+                           ("cube.off", "meshes[0]: found")):
+            self.fail_with(2, "render", self.scene("s.json", mesh), says=[says])
+
+    def test_open_glass(self):
+        """The edge is named by its vertices and their places."""
+        for name, faces, says in (("open.off", CUBE[:-1], "the edge from vertex 4 to 6 (from 0), (0, 0, 1) to (0, 1, 1), is open: one face alone has this edge"),
+                                  ("turned.off", CUBE[:-1] + [CUBE[-1][::-1]], "is open: its two faces are wound against each other")):
+            self.write(name, off(CORNERS, faces))
+            for material in ("glass", "frost"):
+                mesh = {"file": name, "material": material}
+                said = self.fail_with(2, "render", self.scene("s.json", mesh), says=["meshes[0].file", f'the material "{material}" lets light in'])
+                self.assertIn(says, " ".join(said.errors.split()))
+            self.succeed("render", self.scene("s.json", {"file": name, "material": "clay"}), "--spp", 1, "-q", "-o", "x.pfm")
+        inside_out = [face[::-1] for face in CUBE]
+        self.write("bubble.off", off(CORNERS, inside_out))
+        self.succeed("render", self.scene("s.json", {"file": "bubble.off", "material": "glass"}), "--spp", 1, "-q", "-o", "x.pfm")
+
+    def test_glass_on_a_floor(self):
+        """Both are named where a face of glass lies in a face of another."""
+        self.write("cube.off", off(CORNERS, CUBE))
+        floor = {"corner": [-3, 0, 3], "u": [6, 0, 0], "v": [0, 0, -6], "material": "clay"}
+        said = self.fail_with(2, "render", self.scene("s.json", {"file": "cube.off", "material": "glass"}, quads=[floor]), says=["in one plane"])
+        self.assertIn("of cube.off", said.errors)
+        self.assertIn("quads[0]", said.errors)
+        lifted = {"file": "cube.off", "material": "glass", "translate": [0, 1e-6, 0]}
+        self.succeed("render", self.scene("s.json", lifted, quads=[floor]), "--spp", 1, "-q", "-o", "x.pfm")
+
+    def test_without_area(self):
+        """What has no area where it stands is left out and counted."""
+        self.write("sliver.off", off(CORNERS + [[2, 0, 0], [3, 1e-15, 0], [4, 0, 0]], CUBE + [(8, 9, 10)]))
+        said = self.succeed("scene", self.scene("s.json", {"file": "sliver.off", "material": "clay"})).errors
+        self.assertIn("11 vertices, 12 triangles; 1 without an area left out", said)
+
+    # ---- every command ----
+
+    def test_scene_names_the_file(self):
+        os.mkdir(self.path("data"))
+        self.write("data/cube.off", off(CORNERS, CUBE))
+        mesh = {"file": "data/cube.off", "material": "clay", "rotate": [0, 15, 0]}
+        self.scene("s.json", mesh, spheres=[GROUND])
+        document = json.loads(self.succeed("scene", "s.json").stdout)
+        self.assertEqual(document["meshes"], [mesh])
+        self.assertNotIn("triangles", document)
+        self.succeed("scene", "s.json", "-o", "data/t.json")
+        self.assertEqual(json.loads(self.read("data/t.json"))["meshes"][0]["file"], "cube.off")
+        self.assert_same(self.picture("s.json"), self.picture("data/t.json"))
+        self.fail_with(2, "render", "s.json", "-o", "data/cube.off", "--format", "png", says=["a mesh of the scene"])
+
+    def test_edits(self):
+        self.write("cube.off", off(CORNERS, CUBE))
+        self.scene("s.json", {"file": "cube.off", "material": "clay"}, spheres=[GROUND])
+        self.scene("t.json", {"file": "cube.off", "material": "steel", "rotate": [0, 20, 0]}, spheres=[GROUND])
+        edits = ("--set", "meshes[0].rotate=[0,20,0]", "--set", "meshes[0].material=steel")
+        self.assert_same(self.picture("s.json", *edits), self.picture("t.json"))
+        self.assert_different(self.picture("s.json"), self.picture("t.json"))
+
+    def test_commands(self):
+        self.write("cube.off", off(CORNERS, CUBE))
+        self.scene("s.json", {"file": "cube.off", "material": "clay"}, {"file": "cube.off", "material": "glass", "translate": [1.5, 0.2, 0]},
+                   spheres=[GROUND])
+        self.assertIn("24 triangles", self.succeed("explain", "s.json").stdout.decode())
+        path = self.succeed("explain", "s.json", "--pixel", "24,16").stdout.decode()
+        self.assertIn("of cube.off", path)
+        self.succeed("check", "s.json", "--width", 24, "--spp", 512)
+        self.succeed("render", "s.json", "--turntable", 2, "--fit", "--width", 16, "--spp", 1, "-q", "-o", "t.png")
+        self.assertEqual([name for name in self.files() if name.startswith("t-") or name.startswith("t.")], ["t-0000.png", "t-0001.png"])
+        self.succeed("render", "s.json", "--width", 16, "--spp", 4, "-q", "-o", "x.exr", "--set", "backdrop=none", "--set", "shadow_catcher=true")
+        self.succeed("cost", "s.json", "--width", 16, "--time", 1, "-q", "-o", "cost.html")
+
+
+if __name__ == "__main__":
+    main()
