@@ -63,9 +63,9 @@ static bool starts_like(const char *bytes, size_t length, BpKnownFile *found) {
         STARTS("LASF", BP_FILE_POINTS, "a cloud of points (LAS)"),
         STARTS("ASTM-E57", BP_FILE_POINTS, "a cloud of points (E57)"),
         STARTS("\x93NUMPY", BP_FILE_POINTS, "an array of NumPy (.npy)"),
-        STARTS("BLENDER", BP_FILE_MESH, "a file of Blender"),
-        STARTS("glTF", BP_FILE_MESH, "a glTF file"),
-        STARTS("Kaydara FBX", BP_FILE_MESH, "an FBX file"),
+        STARTS("BLENDER", BP_FILE_WORLD, "a file of Blender"),
+        STARTS("glTF", BP_FILE_WORLD, "a glTF file"),
+        STARTS("Kaydara FBX", BP_FILE_WORLD, "an FBX file"),
         STARTS("#include", BP_FILE_SOURCE, "the source text of a program"),
         STARTS("#ifndef", BP_FILE_SOURCE, "the source text of a program"),
         STARTS("#pragma", BP_FILE_SOURCE, "the source text of a program"),
@@ -83,18 +83,18 @@ static bool is_called_like(const char *name, BpKnownFile *found) {
     static const struct {
         const char *end;
         BpKnownFile file;
-    } known[] = {{".blend", {BP_FILE_MESH, "a file of Blender"}},
+    } known[] = {{".blend", {BP_FILE_WORLD, "a file of Blender"}},
                  {".obj", {BP_FILE_MESH, "a mesh (OBJ)"}},
                  {".mtl", {BP_FILE_MESH, "the materials of a mesh (MTL)"}},
                  {".stl", {BP_FILE_MESH, "a mesh (STL)"}},
                  {".off", {BP_FILE_MESH, "a mesh (OFF)"}},
-                 {".fbx", {BP_FILE_MESH, "an FBX file"}},
-                 {".gltf", {BP_FILE_MESH, "a glTF file"}},
-                 {".dae", {BP_FILE_MESH, "a Collada file"}},
-                 {".usd", {BP_FILE_MESH, "a USD file"}},
-                 {".usda", {BP_FILE_MESH, "a USD file"}},
-                 {".pov", {BP_FILE_MESH, "a scene of POV-Ray"}},
-                 {".pbrt", {BP_FILE_MESH, "a scene of pbrt"}},
+                 {".fbx", {BP_FILE_WORLD, "an FBX file"}},
+                 {".gltf", {BP_FILE_WORLD, "a glTF file"}},
+                 {".dae", {BP_FILE_WORLD, "a Collada file"}},
+                 {".usd", {BP_FILE_WORLD, "a USD file"}},
+                 {".usda", {BP_FILE_WORLD, "a USD file"}},
+                 {".pov", {BP_FILE_WORLD, "a scene of POV-Ray"}},
+                 {".pbrt", {BP_FILE_WORLD, "a scene of pbrt"}},
                  {".xtc", {BP_FILE_PARTICLES, "a trajectory of GROMACS (XTC)"}},
                  {".trr", {BP_FILE_PARTICLES, "a trajectory of GROMACS (TRR)"}},
                  {".tpr", {BP_FILE_PARTICLES, "a run input file of GROMACS (TPR)"}},
@@ -208,7 +208,7 @@ bool bp_known_file(const char *name, const char *bytes, size_t length, size_t si
     if (starts_like(bytes, length, found)) {
         BpKnownFile called; /* Blender, spreadsheets and NumPy pack their files */
         if ((found->kind == BP_FILE_PACKED || found->kind == BP_FILE_GZIP) && is_called_like(name, &called) &&
-            (called.kind == BP_FILE_MESH || called.kind == BP_FILE_POINTS))
+            (called.kind == BP_FILE_WORLD || called.kind == BP_FILE_POINTS))
             *found = called;
         return true;
     }
@@ -249,8 +249,11 @@ const char *bp_known_file_remedy(const BpKnownFile *file) {
         return " or a file of particles in a format of docs/PARTICLES.md; convert it, to CSV or PLY for "
                "example";
     case BP_FILE_MESH:
-        return "; of triangles only those in scenes are rendered, so meshes and scenes of other programs "
-               "cannot be read yet";
+        return "; give the path of a file named .ply, .obj, .stl or .off, with its MTL files beside it, or "
+               "name it in "
+               "a scene's \"meshes\"";
+    case BP_FILE_WORLD:
+        return "; export its meshes as PLY, OBJ, STL or OFF";
     case BP_FILE_SOURCE:
         return "; write the scene as JSON: scenes/README.md has its members, and scenes/ the pictures of the "
                "book";

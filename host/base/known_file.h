@@ -17,7 +17,8 @@ typedef enum BpFileKind {
     BP_FILE_PACKED,    /* otherwise */
     BP_FILE_PARTICLES, /* of other programs: trajectories, crystals */
     BP_FILE_POINTS,    /* of other programs: clouds and tables */
-    BP_FILE_MESH,      /* of triangles, and scenes of other programs */
+    BP_FILE_MESH,      /* that this program reads, from a file of its name */
+    BP_FILE_WORLD,     /* scenes of other programs */
     BP_FILE_SOURCE     /* of a program */
 } BpFileKind;
 

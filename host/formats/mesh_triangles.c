@@ -50,20 +50,16 @@ static BpStatus refuse_edge(const BpMesh *mesh, const BpMeshUse *use, const BpMe
         b[1], b[2], bp_mesh_edge_fault_text(edge->fault));
 }
 
-/* Of the faces with one material. */
-static BpStatus check_closed(const BpMesh *mesh, const BpMeshUse *use, uint32_t material,
-                             const BpScene *scene, BpError *err) {
+BpStatus bp_mesh_find_part_edge(const BpMesh *mesh, const BpMeshUse *use, uint32_t material, BpMeshEdge *edge,
+                                BpError *err) {
     BpMesh part = {.positions = mesh->positions, .vertex_count = mesh->vertex_count};
-    BpMeshEdge edge;
-    part.faces = malloc(mesh->face_count * sizeof *part.faces);
+    part.faces = malloc((mesh->face_count + 1) * sizeof *part.faces);
     if (part.faces == NULL)
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu triangles", mesh->face_count);
     for (size_t f = 0; f < mesh->face_count; f++)
         if (material_of(mesh, use, f) == material)
             memcpy(part.faces[part.face_count++], mesh->faces[f], sizeof *part.faces);
-    BpStatus status = bp_mesh_find_open_edge(&part, &edge, err);
-    if (status == BP_OK && edge.fault != BP_MESH_EDGE_GOOD)
-        status = refuse_edge(mesh, use, &edge, scene->materials[material].name, err);
+    const BpStatus status = bp_mesh_find_open_edge(&part, edge, err);
     free(part.faces);
     return status;
 }
@@ -76,8 +72,11 @@ static BpStatus check_glass(const BpMesh *mesh, const BpMeshUse *use, const BpSc
         const uint32_t material = material_of(mesh, use, f);
         if (used[material]) continue;
         used[material] = true;
-        if (bp_material_is(scene->materials[material].kind, BP_HAS_INSIDE))
-            status = check_closed(mesh, use, material, scene, err);
+        if (!bp_material_is(scene->materials[material].kind, BP_HAS_INSIDE)) continue;
+        BpMeshEdge edge;
+        status = bp_mesh_find_part_edge(mesh, use, material, &edge, err);
+        if (status == BP_OK && edge.fault != BP_MESH_EDGE_GOOD)
+            status = refuse_edge(mesh, use, &edge, scene->materials[material].name, err);
     }
     free(used);
     return status;
@@ -142,13 +141,14 @@ static size_t add_faces(const BpMesh *mesh, const BpMeshUse *use, bool colored, 
 static BpStatus add_note(const BpMesh *mesh, const BpMeshUse *use, size_t left_out, size_t colors_used,
                          BpScene *scene, BpError *err) {
     char text[1024], vertices[32], triangles[32], out[32];
-    const size_t added = mesh->face_count - left_out, lost = mesh->dropped_degenerate + left_out;
+    const size_t added = mesh->face_count - left_out;
     size_t used = (size_t)snprintf(text, sizeof text, "%s vertices, %s triangle%s",
                                    bp_format_whole(mesh->vertex_count, vertices, sizeof vertices),
                                    bp_format_whole(added, triangles, sizeof triangles), bp_plural(added));
-    if (lost > 0)
-        used += (size_t)snprintf(text + used, sizeof text - used, "; %s without an area left out",
-                                 bp_format_whole(lost, out, sizeof out));
+    if (left_out > 0)
+        used += (size_t)snprintf(text + used, sizeof text - used,
+                                 "; %s triangle%s without an area where the mesh stands left out",
+                                 bp_format_whole(left_out, out, sizeof out), bp_plural(left_out));
     if (mesh->face_colors == NULL && mesh->vertex_colors != NULL && colors_used > 0)
         used += (size_t)snprintf(text + used, sizeof text - used,
                                  "; each triangle has the mean of the colours of its vertices");

@@ -17,6 +17,11 @@ typedef struct BpMeshUse {
     const uint32_t *materials; /* Optional: for each of the mesh's own, one of the scene's, or UINT32_MAX */
 } BpMeshUse;
 
+/* Finds the first edge at which the faces of one material, into the scene's, are not closed or not
+ * consistently wound. BP_ERR_MEMORY is the only error. */
+BpStatus bp_mesh_find_part_edge(const BpMesh *mesh, const BpMeshUse *use, uint32_t material, BpMeshEdge *edge,
+                                BpError *err);
+
 /* Adds the mesh's faces to the scene's triangles, which have its colours where their material has an albedo,
  * and a note. The mesh's positions are then those in the scene. Fails with BP_ERR_SCENE on glass that is not
  * closed, on faces without a material, and on too many triangles. */

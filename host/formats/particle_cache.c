@@ -29,6 +29,7 @@ static BpStatus fail_format(const BpNode *node, const char *path, FILE *stream, 
         known.what,
         known.kind == BP_FILE_PARTICLES ? "; convert it, with ASE or MDAnalysis"
         : known.kind == BP_FILE_POINTS  ? "; convert it, to CSV or PLY"
+        : known.kind == BP_FILE_MESH    ? "; name meshes in \"meshes\""
                                         : "");
 }
 

@@ -3,7 +3,8 @@
 
 #include "base/input_file.h"
 #include "document_change.h"
-#include "particle_document.h"
+#include "file_document.h"
+#include "meshes/mesh.h"
 #include "particles/particles.h"
 #include "scene_parse.h"
 
@@ -44,15 +45,20 @@ BpStatus bp_scene_parse_with_spheres(const char *text, size_t length, const char
     return bp_scene_parse_changed(text, length, name, &changes, scene, err);
 }
 
-/* A document for a file of particles; *text is NULL for other files. */
-static BpStatus make_document(const char *path, char **text, BpError *err) {
+/* A document for a file of particles or of a mesh; *text is NULL for other files. */
+static BpStatus make_document(const char *path, char **text, char note[BP_DOCUMENT_NOTE_SIZE], BpError *err) {
     FILE *stream = NULL;
     uint64_t size = 0;
     *text = NULL;
+    note[0] = '\0';
     struct stat state;
     if (stat(path, &state) == 0 && S_ISFIFO(state.st_mode)) return BP_OK; /* what is read from it is gone */
-    BP_TRY(bp_file_open(path, false, "a scene document (a JSON file) or a file of particles", &stream, &size,
-                        err));
+    BP_TRY(bp_file_open(path, false, "a scene document (a JSON file) or a file of particles or a mesh",
+                        &stream, &size, err));
+    if (bp_mesh_is_file(path)) {
+        fclose(stream);
+        return bp_mesh_document(path, text, note, err);
+    }
     const BpParticleFormat format = bp_particle_format_find(path, stream);
     fclose(stream);
     return format == BP_PARTICLES_NONE ? BP_OK : bp_particle_document(path, text, err);
@@ -64,15 +70,18 @@ BpStatus bp_scene_load_changed(const char *path, const BpSceneChanges *changes, 
     size_t length = 0;
     BpSceneChanges made = *changes;
     *scene = NULL;
-    BP_TRY(make_document(path, &text, err));
+    char note[BP_DOCUMENT_NOTE_SIZE];
+    BP_TRY(make_document(path, &text, note, err));
     if (text != NULL) {
         made.flags |= BP_PARSE_MADE;
         length = strlen(text);
     } else {
         BP_TRY(bp_file_read(path, "a scene document (a JSON file)", &text, &length, err));
     }
-    const BpStatus status = bp_scene_parse_changed(text, length, path, &made, scene, err);
+    BpStatus status = bp_scene_parse_changed(text, length, path, &made, scene, err);
     free(text);
+    if (status == BP_OK && note[0] != '\0') status = bp_scene_note(*scene, path, note, err);
+    if (status != BP_OK) bp_scene_destroy(scene);
     return status;
 }
 

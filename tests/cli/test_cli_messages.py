@@ -107,14 +107,12 @@ class Messages(ProgramTest):
 
     CONVERT = "convert it, with ASE or MDAnalysis, to extended XYZ"
     TABLE = "convert it, to CSV or PLY"
-    SPHERES = "of triangles only those in scenes are rendered"
+    MESH, WORLD = "give the path of a file named .ply, .obj, .stl or .off", "export its meshes as PLY, OBJ, STL or OFF"
     POSCAR = b"NaCl\n 1.0\n5.6 0 0\n0 5.6 0\n0 0 5.6\nNa Cl\n4 4\nDirect\n0 0 0\n"
     OBJ = b"# a cube\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
     FILES = (("POSCAR", POSCAR, "a structure of VASP (POSCAR)", CONVERT), ("CONTCAR.relaxed", POSCAR, "a structure of VASP", CONVERT),
              ("unnamed", POSCAR, "a structure of VASP", CONVERT), ("run.vasp", POSCAR, "a structure of VASP", CONVERT),
-             ("a.obj", OBJ, "a mesh (OBJ)", SPHERES), ("unnamed", OBJ, "a mesh (OBJ)", SPHERES),
-             ("a.stl", b"solid x\nfacet normal 0 0 1\n", "a mesh (STL)", SPHERES),
-             ("unnamed", b"solid" + bytes(75) + struct.pack("<I", 2) + bytes(100), "a mesh (STL)", SPHERES),
+             ("unnamed", OBJ, "a mesh (OBJ)", MESH), ("a.mtl", b"newmtl a\nKd 1 1 1\n", "the materials of a mesh (MTL)", MESH),
              ("a.xtc", struct.pack(">ii", 1995, 3) + bytes(90), "a trajectory of GROMACS (XTC)", CONVERT),
              ("unnamed", struct.pack(">ii", 1993, 3) + bytes(90), "a trajectory of GROMACS (TRR)", CONVERT),
              ("a.dcd", struct.pack("<i", 84) + b"CORD" + bytes(90), "a trajectory of CHARMM or NAMD (DCD)", CONVERT),
@@ -123,8 +121,7 @@ class Messages(ProgramTest):
              ("a.vtk", b"# vtk DataFile Version 3.0\n", "a file of VTK", TABLE), ("a.npy", b"\x93NUMPY\1\0" + bytes(90), "an array of NumPy (.npy)", TABLE),
              ("a.npz", b"PK\3\4" + bytes(90), "arrays of NumPy (.npz)", TABLE), ("a.xlsx", b"PK\3\4" + bytes(90), "a spreadsheet", TABLE),
              ("a.zip", b"PK\3\4" + bytes(90), "a file packed by zip", "unpack it first"),
-             ("a.blend", b"BLENDER-v300" + bytes(90), "a file of Blender", SPHERES),
-             ("packed.blend", b"\x28\xb5\x2f\xfd" + bytes(90), "a file of Blender", SPHERES),
+             ("a.usda", b"#usda 1.0\n", "a USD file", WORLD), ("a.pov", b"camera {}\n", "a scene of POV-Ray", WORLD),
              ("main.cc", b"// A picture\n#include <iostream>\nint main() {}\n", "the source text of a program", "write the scene as JSON"),
              ("unnamed", b'#include "rtweekend.h"\n', "the source text of a program", "write the scene as JSON"),
              ("a.test.gz", gzip.compress(b"hello"), "a file packed by gzip", "whose format the name tells, as in FILE.xyz.gz; rename it, or unpack"),

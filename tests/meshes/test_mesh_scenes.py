@@ -192,7 +192,7 @@ class Meshes(ProgramTest):
         """What has no area where it stands is left out and counted."""
         self.write("sliver.off", off(CORNERS + [[2, 0, 0], [3, 1e-15, 0], [4, 0, 0]], CUBE + [(8, 9, 10)]))
         said = self.succeed("scene", self.scene("s.json", {"file": "sliver.off", "material": "clay"})).errors
-        self.assertIn("11 vertices, 12 triangles; 1 without an area left out", said)
+        self.assertIn("11 vertices, 12 triangles; 1 triangle without an area where the mesh stands left out", said)
 
     # ---- every command ----
 
@@ -229,6 +229,66 @@ class Meshes(ProgramTest):
         self.assertEqual([name for name in self.files() if name.startswith("t-") or name.startswith("t.")], ["t-0000.png", "t-0001.png"])
         self.succeed("render", "s.json", "--width", 16, "--spp", 4, "-q", "-o", "x.exr", "--set", "backdrop=none", "--set", "shadow_catcher=true")
         self.succeed("cost", "s.json", "--width", 16, "--time", 1, "-q", "-o", "cost.html")
+
+    # ---- a file alone ----
+
+    def test_a_file_alone(self):
+        """It is framed, lit, and rendered as the scene that `scene` prints."""
+        self.write("cube.off", off(CORNERS, CUBE))
+        said = self.succeed("render", "cube.off", "--width", 40, "--spp", 4, "-o", "a.pfm").errors
+        self.assertIn("cube.off: 8 vertices, 12 triangles", said)
+        self.succeed("scene", "cube.off", "-o", "cube.json")
+        document = json.loads(self.read("cube.json"))
+        self.assertEqual(document["meshes"], [{"file": "cube.off", "material": "surface"}])
+        self.assertEqual((document["camera"]["fit"], document["lighting"], document["shadow_catcher"]), ("scene", "studio", True))
+        self.assert_same(self.read("a.pfm"), self.picture("cube.json", "--width", 40, "--spp", 4))
+        width, height, numbers = read_pfm(self.read("a.pfm"))
+        darker = [i for i in range(width * height) if numbers[3 * i + 2] < 0.62 * numbers[0]]
+        self.assertTrue(width * height / 5 < len(darker) < width * height * 3 / 4, "the cube fills the picture and is not cut off")
+        for at in darker:
+            self.assertTrue(0 < at % width < width - 1 and 0 < at // width < height - 1, at)
+
+    def test_up(self):
+        """STL files have z up: what lies at the greatest z is at the top of the picture."""
+        corners = [(0, 0, 0), (4, 0, 0), (0, 4, 0), (1, 1, 9)]
+        rows = ["facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {x} {y} {z}\n" for x, y, z in (corners[k] for k in face)) +
+                "endloop\nendfacet\n" for face in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3))]
+        self.write("spire.stl", "solid s\n" + "".join(rows) + "endsolid s\n")
+        self.assertEqual(json.loads(self.succeed("scene", "spire.stl").stdout)["meshes"][0]["rotate"], [-90, 0, 0])
+        self.write("turned.off", off([(x, z, -y) for x, y, z in corners], ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3))))
+        arguments = ("--width", 32, "--spp", 2)
+        stl, turned = self.numbers("spire.stl", *arguments), self.numbers("turned.off", *arguments)
+        self.assertLess(sum(abs(a - b) for a, b in zip(stl, turned)) / sum(turned), 1e-3)
+
+    def test_points_stay_points(self):
+        head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n%send_header\n0 0 0\n1 0 0\n0 1 0\n%s"
+        self.write("points.ply", head % ("", ""))
+        self.write("mesh.ply", head % ("element face 1\nproperty list uchar int vertex_indices\n", "3 0 1 2\n"))
+        self.assertIn("particles", json.loads(self.succeed("scene", "points.ply").stdout))
+        self.assertIn("meshes", json.loads(self.succeed("scene", "mesh.ply").stdout))
+
+    def test_offers(self):
+        """What MTL has of a material that faces use: Kd, Ke, and Ni and d of glass that is closed."""
+        self.write("cube.obj", "mtllib a.mtl\n" + self.obj())
+        self.write("a.mtl", "newmtl one\nKd 1 0.5 0.25\nKe 2 0 0\nnewmtl two\nKd 0 0 1\nd 0.1\nNi 1.4\nnewmtl three\nKd 1 1 1\n")
+        result = self.succeed("scene", "cube.obj")
+        document = json.loads(result.stdout)
+        self.assertEqual(document["meshes"], [{"file": "cube.obj", "materials": {"one": "one", "two": "two"}}])
+        self.assertEqual(document["materials"], {"one": {"type": "lambertian", "albedo": [1, 0.5, 0.25], "emit": [2, 0, 0]},
+                                                 "two": {"type": "lambertian", "albedo": [0, 0, 1]}})
+        self.assertIn('the material "two" is matte, although its d is 0.1: its faces are not closed', result.errors)
+        self.write("a.mtl", "newmtl all\nd 0.1\nNi 1.4\n")
+        self.write("cube.obj", "mtllib a.mtl\nusemtl all\n" + "\n".join(row for row in self.obj().split("\n") if not row.startswith("usemtl")))
+        self.assertEqual(json.loads(self.succeed("scene", "cube.obj").stdout)["materials"], {"all": {"type": "dielectric", "refraction_index": 1.4}})
+        self.succeed("render", "cube.obj", "--width", 16, "--spp", 1, "-q", "-o", "x.png")
+        self.write("half.obj", "\n".join(row for row in self.obj().split("\n") if row != "usemtl one"))
+        self.assertEqual(json.loads(self.succeed("scene", "half.obj").stdout)["meshes"],
+                         [{"file": "half.obj", "materials": {"two": "two"}, "material": "surface"}])
+
+    def test_other_formats(self):
+        for name, content in (("a.blend", b"BLENDER-v300" + bytes(90)), ("a.glb", b"glTF" + bytes(90)), ("a.fbx", b"Kaydara FBX Binary" + bytes(90))):
+            self.write(name, content)
+            self.fail_with(2, "render", name, says=[name, "export it as PLY, OBJ, STL or OFF"])
 
 
 if __name__ == "__main__":
