@@ -202,6 +202,25 @@ BP_API BpStatus bp_scene_parse_with_spheres(const char *text, size_t length, con
                                             const BpSphereSet *sets, size_t set_count, BpScene **scene,
                                             BpError *err);
 
+/* A mesh of one material, as arrays. Zero it, then set what there is. */
+typedef struct BpMeshSet {
+    size_t vertex_count, triangle_count;
+    BpRows vertex; /* 3 columns, from -1e9 to 1e9 */
+    const uint32_t
+        *triangle; /* 3 of each: its vertices, counted from 0, counter-clockwise seen from outside */
+    BpRows color;  /* of triangles; 3 columns, linear, from 0 to 1: replaces the material's albedo. data NULL:
+                      none */
+    const char *material; /* Optional. A name from the scene's "materials"; NULL: matte */
+    const char *name;     /* Optional. What messages call the mesh; NULL: "the mesh" */
+} BpMeshSet;
+
+/* The same with `mesh_count` meshes after the triangles that the document names. Triangles without an area
+ * are left out. BP_ERR_SCENE names the vertex or triangle, counted from 0 in its mesh, and for glass that is
+ * not closed the edge. */
+BP_API BpStatus bp_scene_parse_with_shapes(const char *text, size_t length, const char *name,
+                                           const BpSphereSet *sets, size_t set_count, const BpMeshSet *meshes,
+                                           size_t mesh_count, BpScene **scene, BpError *err);
+
 BP_API void bp_scene_destroy(BpScene **scene);
 
 /* Overrides the picture's width in pixels; the height follows from the scene's aspect ratio. BP_ERR_USAGE: a

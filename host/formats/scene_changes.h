@@ -35,6 +35,8 @@ typedef struct BpSceneChanges {
     size_t *fresnel_counts;     /* Optional: in how many it was different, and how many have it */
     const BpSphereSet *spheres; /* Optional: spheres after all others */
     size_t sphere_set_count;
+    const BpMeshSet *meshes; /* Optional: triangles after all others */
+    size_t mesh_set_count;
 } BpSceneChanges;
 
 #endif

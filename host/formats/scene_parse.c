@@ -2,6 +2,7 @@
 #include "scene_parse.h"
 
 #include "material_index.h"
+#include "mesh_sets.h"
 #include "scene_background.h"
 #include "scene_camera.h"
 #include "scene_faults.h"
@@ -149,6 +150,7 @@ BpStatus bp_parse_scene(const BpNode *root, const BpSceneChanges *changes, BpSce
     if (status == BP_OK) status = bp_parse_clouds(&clouds, &index, changes->flags, scene, err);
     if (status == BP_OK) status = bp_parse_particles(&particles, &index, changes, scene, err);
     if (status == BP_OK) status = bp_add_sphere_sets(&index, changes, scene, err);
+    if (status == BP_OK) status = bp_add_mesh_sets(&index, changes, scene, err);
     free(index.by_name);
     BP_TRY(status);
     if (changes->fresnel != NULL) BP_TRY(choose_fresnel(changes, scene, err));

@@ -2,24 +2,11 @@
 #include "scene_sets.h"
 
 #include "named_file.h"
+#include "rows.h"
 
 #include "scene/scene_fault.h"
 
 #include <math.h>
-#include <string.h>
-
-static double number(const BpRows *rows, size_t row, ptrdiff_t column) {
-    const char *const place =
-        (const char *)rows->data + (ptrdiff_t)row * rows->row_stride + column * rows->column_stride;
-    if (rows->type == BP_NUMBER_DOUBLE) {
-        double value;
-        memcpy(&value, place, sizeof value);
-        return value;
-    }
-    float value;
-    memcpy(&value, place, sizeof value);
-    return (double)value;
-}
 
 static const char *name_of(const BpSphereSet *set) {
     return set->name != NULL ? set->name : "the spheres";
@@ -52,7 +39,7 @@ static BpStatus find_material(const BpSphereSet *set, const BpMaterialIndex *ind
 
 static BpStatus read_color(const BpSphereSet *set, size_t i, float albedo[3], BpError *err) {
     for (ptrdiff_t c = 0; c < 3; c++) {
-        const double share = number(&set->color, i, c);
+        const double share = bp_rows_number(&set->color, i, c);
         if (!(share >= 0 && share <= 1))
             return bp_fail(err, BP_ERR_SCENE,
                            "sphere %zu (from 0) of %s: color: found %g, expected shares of light from 0 to 1",
@@ -67,8 +54,8 @@ static BpStatus read_spheres(const BpSphereSet *set, uint32_t material, bool col
     for (size_t i = 0; i < set->count; i++) {
         BpSphere *const sphere = &scene->spheres[scene->sphere_count];
         BpFault fault;
-        for (int c = 0; c < 3; c++) sphere->center[c] = number(&set->center, i, c);
-        sphere->radius = number(&set->radius, i, 0);
+        for (int c = 0; c < 3; c++) sphere->center[c] = bp_rows_number(&set->center, i, c);
+        sphere->radius = bp_rows_number(&set->radius, i, 0);
         sphere->material = material;
         sphere->albedo = colored ? (uint32_t)scene->albedo_count : BP_NO_ALBEDO;
         if (bp_sphere_find_fault(sphere, &fault))

@@ -404,6 +404,7 @@ static BpStatus put_spheres(FILE *out, const BpScene *scene, BpError *err) {
 static void put_meshes(FILE *out, const BpScene *scene) {
     fputs(",\n  \"meshes\": [", out);
     for (size_t i = 0; i < scene->mesh_file_count; i++) {
+        if (scene->mesh_files[i].in_memory) continue;
         fputs(i > 0 ? ",\n    " : "\n    ", out);
         bp_print_json_escaped(scene->mesh_files[i].entry, out);
     }

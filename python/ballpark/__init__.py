@@ -1,4 +1,4 @@
-"""Ballpark: a path tracer for spheres on any OpenCL device, with the noise of every picture.
+"""Ballpark: a path tracer for spheres and triangles on any OpenCL device, with the noise of every picture.
 
     import numpy as np, ballpark
     picture = ballpark.render(np.random.rand(1000, 3), radius=0.02, color="#4477aa")
@@ -9,12 +9,13 @@ import typing
 
 from . import _library
 from ._library import DeviceError, Error, SceneError
+from ._mesh import Mesh
 from ._particles import from_ase, from_gsd, from_mdanalysis
 from ._picture import Picture
 from ._render import Device, Interrupted, Progress, Render, devices, make_scene, render
 from ._scene import Camera, Scene, Spheres
 
-__all__ = ["Camera", "Device", "DeviceError", "Error", "Interrupted", "Picture", "Progress", "Render", "Scene",
+__all__ = ["Camera", "Device", "DeviceError", "Error", "Interrupted", "Mesh", "Picture", "Progress", "Render", "Scene",
            "SceneError", "Spheres", "devices", "from_ase", "from_gsd", "from_mdanalysis", "library_version",
            "make_scene", "render"]
 

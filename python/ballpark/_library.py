@@ -55,6 +55,11 @@ class BpSphereSet(c.Structure):
                 ("material", c.c_char_p), ("name", c.c_char_p)]
 
 
+class BpMeshSet(c.Structure):
+    _fields_ = [("vertex_count", c.c_size_t), ("triangle_count", c.c_size_t), ("vertex", BpRows), ("triangle", c.c_void_p),
+                ("color", BpRows), ("material", c.c_char_p), ("name", c.c_char_p)]
+
+
 class BpSceneInfo(c.Structure):
     _fields_ = [("title", c.c_char_p), ("source", c.c_char_p), ("width", c.c_uint32), ("height", c.c_uint32),
                 ("samples_per_pixel", c.c_uint32), ("max_depth", c.c_uint32), ("spheres", c.c_size_t),
@@ -126,7 +131,7 @@ class BpFilmInfo(c.Structure):
 
 # Their C names are those of the classes.
 STRUCTS: typing.List[typing.Type[c.Structure]] = [
-    BpError, BpRows, BpSphereSet, BpSceneInfo, BpCameraInfo, BpElementInfo, BpDeviceInfo, BpRenderOptions, BpProgress,
+    BpError, BpRows, BpSphereSet, BpMeshSet, BpSceneInfo, BpCameraInfo, BpElementInfo, BpDeviceInfo, BpRenderOptions, BpProgress,
     BpStopRule, BpStopEstimate, BpPicture, BpFilmInfo]
 
 INTERFACE = 2  # BP_INTERFACE_PYTHON: messages name arguments, not options of the command line
@@ -146,7 +151,8 @@ _VECTOR = c.c_double * 3
 # Functions that return a status take the error last, which call() adds.
 _STATUS: typing.Dict[str, typing.List[typing.Any]] = {
     "bp_scene_load": [c.c_char_p, _HANDLE],
-    "bp_scene_parse_with_spheres": [c.c_char_p, c.c_size_t, c.c_char_p, c.POINTER(BpSphereSet), c.c_size_t, _HANDLE],
+    "bp_scene_parse_with_shapes": [c.c_char_p, c.c_size_t, c.c_char_p, c.POINTER(BpSphereSet), c.c_size_t,
+                                   c.POINTER(BpMeshSet), c.c_size_t, _HANDLE],
     "bp_scene_set_width": [c.c_void_p, c.c_uint32],
     "bp_devices_list": [c.POINTER(c.POINTER(BpDeviceInfo)), c.POINTER(c.c_size_t)],
     "bp_device_find": [c.c_char_p, c.POINTER(BpDeviceInfo)],

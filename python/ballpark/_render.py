@@ -23,7 +23,8 @@ from ._arguments import ADAPTERS, c_text, warn, whole_number, wrong_type
 from ._colors import Color
 from ._interrupt import CtrlC, Job, interruptible
 from ._picture import Picture
-from ._scene import Document, Scene, Spheres, list_of_spheres, particle_document
+from ._mesh import Mesh
+from ._scene import Document, Scene, Shape, Spheres, list_of_shapes, shape_document
 
 
 class Interrupted(KeyboardInterrupt):
@@ -273,19 +274,35 @@ def _bar(progress: Progress) -> None:
     print(f"\rballpark: {100 * progress.fraction:3.0f} %{noise}{left}    ", end="", file=sys.stderr, flush=True)
 
 
-Subject = typing.Union[Scene, Spheres, typing.Sequence[Spheres], Document, str, "os.PathLike[str]", npt.ArrayLike]
+Subject = typing.Union[Scene, Shape, typing.Sequence[Shape], Document, str, "os.PathLike[str]", npt.ArrayLike]
 
 
-def _is_spheres(subject: typing.Any) -> bool:
-    return isinstance(subject, Spheres) or (
-        isinstance(subject, (list, tuple)) and any(isinstance(one, Spheres) for one in subject))
+def _is_shapes(subject: typing.Any) -> bool:
+    return isinstance(subject, (Spheres, Mesh)) or (
+        isinstance(subject, (list, tuple)) and any(isinstance(one, (Spheres, Mesh)) for one in subject))
+
+
+def _with_mesh(subject: typing.Any, arrays: typing.Dict[str, typing.Any]) -> typing.Any:
+    """The subject, or the mesh of these arrays in its place."""
+    given = [name for name, value in arrays.items() if value is not None]
+    if not given:
+        return subject
+    if subject is not None:
+        raise TypeError(f"{given[0]}: found beside what is to be rendered, expected one or the other; several meshes are a list of "
+                        "ballpark.Mesh")
+    for name in ("vertices", "faces"):
+        if arrays[name] is None:
+            raise TypeError(f"{name}: found none, expected them beside {given[0]}")
+    return Mesh(**arrays)
 
 
 def _is_array(subject: typing.Any) -> bool:
     return hasattr(subject, "__array__") or isinstance(subject, collections.abc.Sequence)
 
 
-def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None,
+def make_scene(subject: typing.Optional[Subject] = None, *, vertices: typing.Optional[npt.ArrayLike] = None,
+               faces: typing.Optional[npt.ArrayLike] = None, colors: typing.Optional[Color] = None,
+               radius: typing.Optional[npt.ArrayLike] = None,
                color: typing.Optional[Color] = None, material: typing.Union[None, str, Document] = None,
                cmap: typing.Optional[str] = None, color_range: typing.Optional[typing.Tuple[float, float]] = None,
                up: typing.Optional[str] = None, camera: typing.Optional[Document] = None,
@@ -293,6 +310,7 @@ def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = Non
                materials: typing.Optional[Document] = None, background: typing.Any = None,
                lighting: typing.Optional[str] = None, backdrop: typing.Any = None) -> Scene:
     """The scene that render() would render of the same arguments; its camera can be used for other pictures."""
+    subject = _with_mesh(subject, {"vertices": vertices, "faces": faces, "colors": colors})
     looks: typing.Dict[str, typing.Any] = {"radius": radius, "color": color, "material": material, "cmap": cmap,
                                            "color_range": color_range,
                                            "up": up}
@@ -314,13 +332,20 @@ def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = Non
         if width is not None and width != scene.width:
             scene.set_width(width)
         return scene
-    if _is_spheres(subject):
-        sets = [dataclasses.replace(one, **given) for one in list_of_spheres(subject)]
+    shapes: typing.List[Shape]
+    if _is_shapes(subject):
+        shapes = list_of_shapes(subject)
+        has_mesh = any(isinstance(one, Mesh) for one in shapes)
+        for name in ("radius", "color"):
+            if name in given and has_mesh:
+                raise lib.SceneError(f"{name}: found for a mesh, expected {'colors' if name == 'color' else 'none'}")
+        shapes = [dataclasses.replace(one, **given) for one in shapes]
     elif not _is_array(subject) or type(subject).__module__.partition(".")[0] in ADAPTERS:
-        raise wrong_type("ballpark.render", subject, "positions (N, 3), Spheres, a dict, a Scene or the path of a file")
+        raise wrong_type("ballpark.render", subject, "positions (N, 3), Spheres, a Mesh, a dict, a Scene, the path of a file, or "
+                         "vertices= and faces=")
     else:
-        sets = [Spheres(typing.cast(npt.ArrayLike, subject), **given)]
-    return Scene(particle_document(sets, camera, width, height, scene_members), sets)
+        shapes = [Spheres(typing.cast(npt.ArrayLike, subject), **given)]
+    return Scene(shape_document(shapes, camera, width, height, scene_members), shapes)
 
 
 FORMER_NAMES = {"lamps": "light_sampling", "light": "lighting"}
@@ -336,7 +361,9 @@ def _refuse_unknown(options: typing.Dict[str, typing.Any]) -> None:
         raise TypeError(f"ballpark.render has no option {name!r}" + (f"; did you mean {near[0]!r}?" if near else ""))
 
 
-def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, color: typing.Optional[Color] = None,
+def render(subject: typing.Optional[Subject] = None, *, vertices: typing.Optional[npt.ArrayLike] = None,
+           faces: typing.Optional[npt.ArrayLike] = None, colors: typing.Optional[Color] = None,
+           radius: typing.Optional[npt.ArrayLike] = None, color: typing.Optional[Color] = None,
            material: typing.Union[None, str, Document] = None, cmap: typing.Optional[str] = None,
            color_range: typing.Optional[typing.Tuple[float, float]] = None, up: typing.Optional[str] = None,
            camera: typing.Optional[Document] = None, width: typing.Optional[int] = None,
@@ -346,11 +373,12 @@ def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, c
            **options: typing.Any) -> Picture:
     """Renders a picture.
 
-    subject: positions (N, 3); Spheres, or a list of them; a scene as a dict, a Scene, or the path of a scene or of a
-    file of particles.
+    subject: positions (N, 3); Spheres, Meshes, or a list of them; a scene as a dict, a Scene, or the path of a scene, of a
+    file of particles or of a mesh. Or in its place vertices, faces and colors of a mesh, as in Mesh.
     For positions and Spheres: radius, color, material, cmap, color_range and up as in Spheres; camera: members of the
     scene's "camera" (without lookfrom, lookat or focus_dist it is fitted to the spheres); width, height: of the picture;
-    materials, background, lighting, backdrop: as in a scene. Without background and lighting, the light is "soft" on white.
+    materials, background, lighting, backdrop: as in a scene. Without background and lighting, the light is "soft" on white, and for
+    a mesh that of a "studio".
     progress: True for a line on standard error, or a function that is called with a Progress about five times a second;
     when it returns False, the render ends with what it has.
     options: those of Render (spp, error, time, seed, device, adaptive, aovs, ...).
@@ -362,7 +390,7 @@ def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, c
         raise wrong_type("progress", progress, "True or a function")
     report = _bar if progress is True else progress if callable(progress) else None
     try:
-        scene = make_scene(subject, radius=radius, color=color, material=material, cmap=cmap, color_range=color_range,
+        scene = make_scene(subject, vertices=vertices, faces=faces, colors=colors, radius=radius, color=color, material=material, cmap=cmap, color_range=color_range,
                            up=up, camera=camera, width=width, height=height, materials=materials, background=background,
                            lighting=lighting, backdrop=backdrop)
         running = Render(scene, **options)

@@ -18,6 +18,7 @@ from . import _library as lib
 from ._arguments import Array, c_text, floats, warn, whole_number, wrong_type
 from ._colors import Color, linear_colors
 from ._interrupt import interruptible
+from ._mesh import CLAY, Mesh, rows
 
 Document = typing.Mapping[str, typing.Any]
 
@@ -25,16 +26,7 @@ Document = typing.Mapping[str, typing.Any]
 PARTICLE_CAMERA: typing.Dict[str, typing.Any] = {
     "image_width": 800, "aspect_ratio": [4, 3], "samples_per_pixel": 32, "max_depth": 20, "vfov": 30}
 PARTICLE_SCENE: typing.Dict[str, typing.Any] = {"lighting": "soft", "transfer": "srgb"}
-
-
-def _rows(array: typing.Optional[npt.NDArray[typing.Any]], per_sphere: bool) -> lib.BpRows:
-    if array is None:
-        return lib.BpRows()
-    strides = array.strides
-    row = strides[0] if per_sphere else 0
-    column = strides[-1] if array.ndim == 2 or (array.ndim == 1 and not per_sphere) else 0
-    kind = 1 if array.dtype == np.float64 else 0
-    return lib.BpRows(c.c_void_p(array.ctypes.data), row, column, kind)
+MESH_SCENE: typing.Dict[str, typing.Any] = {"lighting": "studio", "transfer": "srgb"}
 
 
 @dataclasses.dataclass
@@ -112,8 +104,8 @@ class Spheres:
             places = places[kept]
         name = self.name if kept is None else f"those {self.name} that have a place"
         keep += [places, radii, colors]
-        return lib.BpSphereSet(len(places), _rows(places, True), _rows(radii, radii.ndim == 1),
-                               _rows(colors, colors is not None and colors.ndim == 2),
+        return lib.BpSphereSet(len(places), rows(places, True), rows(radii, radii.ndim == 1),
+                               rows(colors, colors is not None and colors.ndim == 2),
                                None if material is None else c_text("material", material), c_text("name", name))
 
 
@@ -164,36 +156,40 @@ class Camera:
                 for name, value in dataclasses.asdict(self).items()}
 
 
-def list_of_spheres(spheres: typing.Any) -> typing.List[Spheres]:
-    """One Spheres, or several."""
-    if isinstance(spheres, Spheres):
-        return [spheres]
-    if not isinstance(spheres, (list, tuple)):
-        raise wrong_type("spheres", spheres, "Spheres or a list of them")
-    for number, one in enumerate(spheres):
-        if not isinstance(one, Spheres):
-            raise wrong_type(f"spheres[{number}]", one, "Spheres")
-    return list(spheres)
+Shape = typing.Union[Spheres, Mesh]
+
+
+def list_of_shapes(shapes: typing.Any) -> typing.List[Shape]:
+    """One Spheres or Mesh, or several."""
+    if isinstance(shapes, (Spheres, Mesh)):
+        return [shapes]
+    if not isinstance(shapes, (list, tuple)):
+        raise wrong_type("spheres", shapes, "Spheres, a Mesh or a list of them")
+    for number, one in enumerate(shapes):
+        if not isinstance(one, (Spheres, Mesh)):
+            raise wrong_type(f"spheres[{number}]", one, "Spheres or a Mesh")
+    return list(shapes)
 
 
 class Scene:
-    """A scene: a document of the JSON grammar (scenes/README.md) as a dict, and more spheres as arrays.
+    """A scene: a document of the JSON grammar (scenes/README.md) as a dict, and more spheres and meshes as arrays.
 
     Relative files that the document names are looked up in the current folder. Raises SceneError, which names the
     member at fault.
     """
 
-    def __init__(self, document: Document, spheres: typing.Union[Spheres, typing.Sequence[Spheres]] = ()):
-        sets = list_of_spheres(spheres)
-        text, names = self._text(document, sets)
+    def __init__(self, document: Document, spheres: typing.Union[Shape, typing.Sequence[Shape]] = ()):
+        shapes = list_of_shapes(spheres)
+        text, names = self._text(document, shapes)
         keep: typing.List[typing.Any] = []
-        array = (lib.BpSphereSet * max(1, len(sets)))(*(
-            one._set(name, keep) for one, name in zip(sets, names)))
+        sets = [one._set(name, keep) for one, name in zip(shapes, names) if isinstance(one, Spheres)]
+        meshes = [one._set(name, keep) for one, name in zip(shapes, names) if isinstance(one, Mesh)]
+        set_array, mesh_array = (lib.BpSphereSet * max(1, len(sets)))(*sets), (lib.BpMeshSet * max(1, len(meshes)))(*meshes)
         self._handle = lib.Handle("scene")
 
         def parse() -> None:
-            lib.call("bp_scene_parse_with_spheres", text, len(text), b"scene", array, len(sets), self._handle.address,
-                     hide_place=True)
+            lib.call("bp_scene_parse_with_shapes", text, len(text), b"scene", set_array, len(sets), mesh_array, len(meshes),
+                     self._handle.address, hide_place=True)
             keep.clear()
 
         interruptible(parse)
@@ -201,16 +197,17 @@ class Scene:
 
     @staticmethod
     def _text(document: Document,
-              sets: typing.Sequence[Spheres]) -> typing.Tuple[bytes, typing.List[typing.Optional[str]]]:
+              sets: typing.Sequence[Shape]) -> typing.Tuple[bytes, typing.List[typing.Optional[str]]]:
         """The document with the sets' own materials, and the name of each set's material."""
         if not isinstance(document, typing.Mapping):
             raise lib.SceneError(f"found {type(document).__name__}, expected a dict such as {{\"camera\": {{}}}}")
         wanted = dict(document)
         names: typing.List[typing.Optional[str]] = []
         for number, one in enumerate(sets):
-            if isinstance(one.material, typing.Mapping):
+            material = CLAY if isinstance(one, Mesh) and one.material is None else one.material
+            if isinstance(material, typing.Mapping):
                 name = f"{one.name} {number}"
-                wanted["materials"] = {**wanted.get("materials", {}), name: one.material}
+                wanted["materials"] = {**wanted.get("materials", {}), name: material}
                 names.append(name)
             elif one.material is None or isinstance(one.material, str):
                 names.append(one.material)
@@ -220,7 +217,7 @@ class Scene:
 
     @classmethod
     def load(cls, path: typing.Union[str, "os.PathLike[str]"]) -> "Scene":
-        """Reads a scene document or a file of particles (docs/PARTICLES.md)."""
+        """Reads a scene document, a file of particles (docs/PARTICLES.md) or one of a mesh."""
         scene = cls.__new__(cls)
         scene._handle = lib.Handle("scene")
         encoded = c_text("path", path)
@@ -238,6 +235,7 @@ class Scene:
         self.samples_per_pixel: int = info.samples_per_pixel
         self.max_depth: int = info.max_depth
         self.spheres: int = info.spheres
+        self.triangles: int = info.triangles
         self.transfer: str = lib.TRANSFERS[info.transfer]
         self.camera = Camera(_triple(camera.lookfrom), _triple(camera.lookat), _triple(camera.vup), camera.vfov,
                              camera.focus_dist, camera.aperture)
@@ -249,25 +247,25 @@ class Scene:
 
     def __repr__(self) -> str:
         title = f" {self.title!r}" if self.title else ""
-        return f"<ballpark.Scene{title}: {self.spheres:,} spheres, {self.width} x {self.height} pixels>"
+        return f"<ballpark.Scene{title}: {self.spheres:,} spheres, {self.triangles:,} triangles, {self.width} x {self.height} pixels>"
 
 
 def _triple(vector: typing.Any) -> typing.Tuple[float, float, float]:
     return vector[0], vector[1], vector[2]
 
 
-def particle_document(sets: typing.Sequence[Spheres], camera: typing.Optional[Document], width: typing.Optional[int],
+def shape_document(shapes: typing.Sequence[Shape], camera: typing.Optional[Document], width: typing.Optional[int],
                       height: typing.Optional[int], members: Document) -> typing.Dict[str, typing.Any]:
-    """The document for bare spheres: a fitted camera, unless `camera` says where it stands, and soft light, unless `members`
-    has a background."""
+    """The document for bare shapes: a fitted camera, unless `camera` says where it stands, and light, unless `members` has a
+    background: soft for spheres; where there is a mesh, that of a studio, with a shadow on the ground."""
     if camera is not None and not isinstance(camera, typing.Mapping):
         raise wrong_type("camera", camera, 'a dict such as {"vfov": 30}')
     own = dict(camera or {})
+    first, has_mesh = shapes[0], any(isinstance(one, Mesh) for one in shapes)
     placed = {"lookfrom", "lookat", "focus_dist", "defocus_angle"} & set(own)
     whole = dict(PARTICLE_CAMERA)
     if not placed:
-        first = sets[0]
-        whole["fit"] = "particles"
+        whole["fit"] = "scene" if has_mesh else "particles"
         whole["view"] = first.view
         if first.up not in ("x", "y", "z"):
             raise lib.SceneError(f'up: found "{first.up}", expected "x", "y" or "z"')
@@ -281,7 +279,9 @@ def particle_document(sets: typing.Sequence[Spheres], camera: typing.Optional[Do
     if height is not None:
         whole.pop("aspect_ratio", None)
         whole["image_height"] = height
-    scene = {**PARTICLE_SCENE, **members, "camera": whole}
+    scene = {**(MESH_SCENE if has_mesh else PARTICLE_SCENE), **members, "camera": whole}
     if "background" in members and "lighting" not in members:
         del scene["lighting"]
+    elif has_mesh:
+        scene["shadow_catcher"] = {"up": [float(axis == first.up) for axis in "xyz"]}
     return scene

@@ -188,6 +188,85 @@ static void test_refused(void **state) {
     assert_refused(ground, &set, BP_ERR_SCENE, "expected fewer");
 }
 
+static const double corners[4][3] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+static const uint32_t square[2][3] = {{0, 1, 2}, {0, 2, 3}};
+
+static BpMeshSet make_mesh(void) {
+    return (BpMeshSet){.vertex_count = 4,
+                       .triangle_count = 2,
+                       .vertex = {corners, sizeof corners[0], sizeof(double), BP_NUMBER_DOUBLE},
+                       .triangle = &square[0][0],
+                       .material = "blue",
+                       .name = "square"};
+}
+
+static BpStatus parse_mesh(const BpMeshSet *mesh, BpScene **scene) {
+    return bp_scene_parse_with_shapes(ground, strlen(ground), "document", NULL, 0, mesh, 1, scene, &err);
+}
+
+/* A square is the quad of the document; the columns of another array, and a colour that is the material's,
+ * change nothing. */
+static void test_mesh(void **state) {
+    (void)state;
+    static const char quad[] =
+        "{ " HEAD
+        ", \"spheres\": [ { \"center\": [0, -100.5, 0], \"radius\": 100, \"material\": \"blue\" } ],"
+        "\"quads\": [ { \"corner\": [-1, -1, 0], \"u\": [2, 0, 0], \"v\": [0, 2, 0], \"material\": \"blue\" "
+        "} ] }";
+    static const float columns[3][4] = {{-1, 1, 1, -1}, {-1, -1, 1, 1}, {0, 0, 0, 0}},
+                       blue[3] = {0.25f, 0.5f, 0.75f};
+    BpScene *scene = NULL;
+    BpMeshSet mesh = make_mesh();
+    must(parse_mesh(&mesh, &scene));
+    assert_same(parse(quad, NULL, 0), scene);
+    mesh.vertex = (BpRows){columns, sizeof(float), sizeof columns[0], BP_NUMBER_FLOAT};
+    mesh.color = (BpRows){blue, 0, sizeof(float), BP_NUMBER_FLOAT};
+    must(parse_mesh(&mesh, &scene));
+    BpSceneInfo info;
+    bp_scene_info(scene, &info);
+    assert_int_equal(info.triangles, 2);
+    assert_same(parse(quad, NULL, 0), scene);
+}
+
+static void assert_mesh_refused(const BpMeshSet *mesh, BpStatus status, const char *words) {
+    BpScene *scene = NULL;
+    assert_int_equal(parse_mesh(mesh, &scene), status);
+    assert_null(scene);
+    if (strstr(err.message, words) == NULL) fail_msg("\"%s\" lacks \"%s\"", err.message, words);
+}
+
+static void test_mesh_refused(void **state) {
+    (void)state;
+    static const uint32_t beyond[2][3] = {{0, 1, 2}, {0, 2, 4}};
+    static const double infinite[4][3] = {{-1, -1, 0}, {1, -1, 0}, {1, INFINITY, 0}, {-1, 1, 0}};
+    static const float bright[3] = {0, 0, 1.5f};
+    BpMeshSet mesh = make_mesh();
+    mesh.triangle = &beyond[0][0];
+    assert_mesh_refused(&mesh, BP_ERR_SCENE,
+                        "triangle 1 (from 0) of square: found vertex 4, expected one of 4");
+    mesh = make_mesh();
+    mesh.vertex.data = infinite;
+    assert_mesh_refused(&mesh, BP_ERR_SCENE, "vertex 2 (from 0) of square: found inf");
+    mesh = make_mesh();
+    mesh.color = (BpRows){bright, 0, sizeof(float), BP_NUMBER_FLOAT};
+    assert_mesh_refused(&mesh, BP_ERR_SCENE, "triangle 0 (from 0) of square: color: found 1.5");
+    mesh = make_mesh();
+    mesh.material = "glass";
+    assert_mesh_refused(&mesh, BP_ERR_SCENE,
+                        "square: the material \"glass\" lets light in, but the edge from");
+    mesh.material = "glas";
+    assert_mesh_refused(&mesh, BP_ERR_SCENE, "did you mean \"glass\"?");
+    mesh = make_mesh();
+    mesh.triangle = NULL;
+    assert_mesh_refused(&mesh, BP_ERR_USAGE, "square: found no numbers for triangles");
+    mesh = make_mesh();
+    mesh.vertex.type = (BpNumberType)7;
+    assert_mesh_refused(&mesh, BP_ERR_USAGE, "square: found no numbers for vertices");
+    mesh = make_mesh();
+    mesh.triangle_count = SIZE_MAX;
+    assert_mesh_refused(&mesh, BP_ERR_SCENE, "expected fewer");
+}
+
 static void test_picture_in_memory(void **state) {
     (void)state;
     const BpSphereSet set = make_set();
@@ -262,6 +341,8 @@ int main(void) {
         cmocka_unit_test(test_colors),
         cmocka_unit_test(test_fit),
         cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_mesh),
+        cmocka_unit_test(test_mesh_refused),
         cmocka_unit_test(test_picture_in_memory),
         cmocka_unit_test(test_looks),
     };

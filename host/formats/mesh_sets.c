@@ -1,0 +1,122 @@
+/* mesh_sets.c: see mesh_sets.h. */
+#include "mesh_sets.h"
+
+#include "mesh_triangles.h"
+#include "named_file.h"
+#include "rows.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const char *name_of(const BpMeshSet *set) {
+    return set->name != NULL ? set->name : "the mesh";
+}
+
+static bool is_array(const BpRows *rows) {
+    return rows->data != NULL && (rows->type == BP_NUMBER_FLOAT || rows->type == BP_NUMBER_DOUBLE);
+}
+
+static BpStatus check_set(const BpMeshSet *set, BpError *err) {
+    const bool whole = set->vertex_count == 0 || is_array(&set->vertex),
+               cut = set->triangle_count == 0 || set->triangle != NULL;
+    if (!whole || !cut || (set->color.data != NULL && !is_array(&set->color)))
+        return bp_fail(err, BP_ERR_USAGE, "%s: found no numbers for %s, expected some", name_of(set),
+                       !whole ? "vertices"
+                       : !cut ? "triangles"
+                              : "colours");
+    if (set->vertex_count > BP_MESH_COUNT_MAX || set->triangle_count > BP_MESH_COUNT_MAX)
+        return bp_fail(err, BP_ERR_SCENE, "%s: found more than %u vertices or triangles, expected fewer",
+                       name_of(set), BP_MESH_COUNT_MAX);
+    return BP_OK;
+}
+
+static BpStatus make_room(const BpMeshSet *set, BpMesh *mesh, BpError *err) {
+    mesh->positions = malloc((set->vertex_count + 1) * sizeof *mesh->positions);
+    mesh->faces = malloc((set->triangle_count + 1) * sizeof *mesh->faces);
+    if (set->color.data != NULL)
+        mesh->face_colors = malloc((set->triangle_count + 1) * sizeof *mesh->face_colors);
+    if (mesh->positions != NULL && mesh->faces != NULL &&
+        (set->color.data == NULL || mesh->face_colors != NULL))
+        return BP_OK;
+    return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu triangles", set->triangle_count);
+}
+
+static BpStatus read_vertices(const BpMeshSet *set, BpMesh *mesh, BpError *err) {
+    for (size_t v = 0; v < set->vertex_count; v++, mesh->vertex_count++)
+        for (int a = 0; a < 3; a++) {
+            const double place = bp_rows_number(&set->vertex, v, a);
+            if (!(fabs(place) <= BP_VERTEX_MAX))
+                return bp_fail(err, BP_ERR_SCENE,
+                               "vertex %zu (from 0) of %s: found %g, expected coordinates from -1e9 to 1e9",
+                               v, name_of(set), place);
+            mesh->positions[v][a] = place;
+        }
+    return BP_OK;
+}
+
+static BpStatus read_triangle(const BpMeshSet *set, size_t t, BpMesh *mesh, BpError *err) {
+    const uint32_t *const corners = &set->triangle[3 * t];
+    for (int k = 0; k < 3; k++)
+        if (corners[k] >= set->vertex_count)
+            return bp_fail(
+                err, BP_ERR_SCENE,
+                "triangle %zu (from 0) of %s: found vertex %u, expected one of %zu, counted from 0", t,
+                name_of(set), (unsigned)corners[k], set->vertex_count);
+    /* One without area would be left out later, but its edges are not those of a closed mesh. */
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) {
+        mesh->dropped_degenerate++;
+        return BP_OK;
+    }
+    for (int c = 0; c < 3 && mesh->face_colors != NULL; c++) {
+        const double share = bp_rows_number(&set->color, t, c);
+        if (!(share >= 0 && share <= 1))
+            return bp_fail(
+                err, BP_ERR_SCENE,
+                "triangle %zu (from 0) of %s: color: found %g, expected shares of light from 0 to 1", t,
+                name_of(set), share);
+        mesh->face_colors[mesh->face_count][c] = (float)share;
+    }
+    memcpy(mesh->faces[mesh->face_count++], corners, sizeof *mesh->faces);
+    return BP_OK;
+}
+
+static BpStatus read_set(const BpMeshSet *set, BpMesh *mesh, BpError *err) {
+    BP_TRY(check_set(set, err));
+    BP_TRY(make_room(set, mesh, err));
+    BP_TRY(read_vertices(set, mesh, err));
+    for (size_t t = 0; t < set->triangle_count; t++) BP_TRY(read_triangle(set, t, mesh, err));
+    return BP_OK;
+}
+
+static BpStatus find_material(const BpMeshSet *set, const BpMaterialIndex *index, BpScene *scene,
+                              uint32_t *material, BpError *err) {
+    *material =
+        set->material == NULL ? bp_implicit_material(scene, err) : bp_material_find(index, set->material);
+    if (*material != UINT32_MAX) return BP_OK;
+    if (set->material == NULL) return BP_ERR_MEMORY;
+    char text[BP_MISSING_NAME_SIZE];
+    BP_TRY(bp_missing_material_text(index, set->material, text, err));
+    return bp_fail(err, BP_ERR_SCENE, "%s: %s", name_of(set), text);
+}
+
+static BpStatus add_set(const BpMeshSet *set, const BpMaterialIndex *index, BpScene *scene, BpError *err) {
+    BpMesh mesh = {0};
+    BpMeshUse use = {.name = name_of(set),
+                     .placement = bp_placement((const double[3]){1, 1, 1}, (const double[3]){0, 0, 0},
+                                               (const double[3]){0, 0, 0})};
+    const size_t first = scene->triangle_count;
+    BpStatus status = find_material(set, index, scene, &use.material, err);
+    if (status == BP_OK) status = read_set(set, &mesh, err);
+    if (status == BP_OK) status = bp_mesh_add_triangles(&mesh, &use, scene, err);
+    bp_mesh_clear(&mesh);
+    if (status == BP_OK) status = bp_keep_mesh_file(use.name, first, NULL, scene, err);
+    if (status == BP_OK) scene->mesh_files[scene->mesh_file_count - 1].in_memory = true;
+    return status;
+}
+
+BpStatus bp_add_mesh_sets(const BpMaterialIndex *index, const BpSceneChanges *changes, BpScene *scene,
+                          BpError *err) {
+    for (size_t s = 0; s < changes->mesh_set_count; s++)
+        BP_TRY(add_set(&changes->meshes[s], index, scene, err));
+    return BP_OK;
+}

@@ -1,0 +1,110 @@
+"""Meshes as arrays.
+
+In:    vertices and faces, as other packages have them.   Out: triangles as the library reads them.
+Knows: quads, colours of vertices and of faces.   Does not know: scenes, rendering.
+"""
+
+import ctypes as c
+import dataclasses
+import typing
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _library as lib
+from ._arguments import Array, c_text, floats, read
+from ._colors import Color, linear_colors
+
+# What bare meshes are made of.
+CLAY: typing.Dict[str, typing.Any] = {"type": "lambertian", "albedo": [0.6, 0.58, 0.55]}
+
+
+def rows(array: typing.Optional[npt.NDArray[typing.Any]], per_row: bool) -> lib.BpRows:
+    """An array for the library; `per_row`: it has a row for each thing, not one for all."""
+    if array is None:
+        return lib.BpRows()
+    strides = array.strides
+    row = strides[0] if per_row else 0
+    column = strides[-1] if array.ndim == 2 or (array.ndim == 1 and not per_row) else 0
+    kind = 1 if array.dtype == np.float64 else 0
+    return lib.BpRows(c.c_void_p(array.ctypes.data), row, column, kind)
+
+
+@dataclasses.dataclass
+class Mesh:
+    """Triangles or quads of one material, as arrays.
+
+    vertices: (N, 3), in any unit of length. Arrays of float32 and float64 are read where they lie, with any strides.
+    faces: (F, 3) or (F, 4), whole numbers of any type: their vertices, counted from 0, counter-clockwise seen from outside. Quads
+        are cut from their first corner to their third.
+    colors: linear shares of light (r, g, b), (F, 3) of faces or (N, 3) of vertices, of which each face gets the mean; uint8 arrays and
+        "#rrggbb" are sRGB; numbers (F,) or (N,) go through the colour map `cmap`, as in Spheres. As many of vertices as of faces: they
+        are those of faces. None: the material's own.
+    material: a name from the scene's "materials", or a material itself. Those that let light in ask for faces that are closed.
+        None: matte.
+    up, view, name: as in Spheres.
+    """
+
+    vertices: npt.ArrayLike
+    faces: npt.ArrayLike
+    colors: typing.Optional[Color] = None
+    material: typing.Union[None, str, typing.Mapping[str, typing.Any]] = None
+    cmap: str = ""
+    color_range: typing.Optional[typing.Tuple[float, float]] = None
+    up: str = "y"
+    view: typing.Union[str, typing.Sequence[float]] = "three-quarter"
+    name: str = "mesh"
+
+    def _places(self) -> Array:
+        places = floats(self.vertices, "vertices")
+        if places.ndim != 2 or places.shape[1] != 3:
+            hint = "; transpose it, as in vertices.T" if places.ndim == 2 and places.shape[0] == 3 else ""
+            raise lib.SceneError(f"vertices: found an array of shape {places.shape}, expected (N, 3){hint}")
+        bad = np.flatnonzero(~np.isfinite(places).all(axis=1))
+        if len(bad) > 0:
+            more = f", nor in {len(bad) - 1:,} more" if len(bad) > 1 else ""
+            raise lib.SceneError(f"vertices: found no finite number in vertex {bad[0]} (from 0){more}, expected three")
+        return places
+
+    def _corners(self, count: int) -> Array:
+        """(F, 3) or (F, 4), of vertices that there are."""
+        corners, mask = read(self.faces, "faces", "numbers of vertices")
+        if corners.ndim != 2 or corners.shape[1] not in (3, 4):
+            hint = "; transpose it, as in faces.T" if corners.ndim == 2 and corners.shape[0] in (3, 4) else ""
+            raise lib.SceneError(f"faces: found an array of shape {corners.shape}, expected (F, 3) or (F, 4){hint}")
+        if corners.dtype.kind not in "iu" or mask is not None:
+            raise lib.SceneError(f"faces: found {'masked numbers' if mask is not None else corners.dtype}, expected whole numbers, as "
+                                 "in faces.astype(int)")
+        bad = np.flatnonzero(((corners < 0) | (corners >= count)).any(axis=1))
+        if len(bad) > 0:
+            wrong = next(int(vertex) for vertex in corners[bad[0]] if not 0 <= vertex < count)
+            raise lib.SceneError(f"faces: found vertex {wrong} in face {bad[0]} (from 0), expected numbers from 0 to {count - 1}")
+        return corners
+
+    def _colors(self, corners: Array, count: int) -> typing.Optional[Array]:
+        """Those of faces, or one for all."""
+        shape = () if self.colors is None or isinstance(self.colors, str) else read(self.colors, "colors")[0].shape
+        one_for_all = shape == (3,) and not self.cmap and self.color_range is None
+        of_vertices = shape[:1] == (count,) and count != len(corners) and not one_for_all
+        colors = linear_colors(self.colors, count if of_vertices else len(corners), None, self.cmap, self.color_range)
+        if colors is None or colors.ndim == 1:
+            return colors
+        missing = np.flatnonzero(np.isnan(colors).any(axis=1))
+        if len(missing) > 0:
+            raise lib.SceneError(f"colors: found no number for {'vertex' if of_vertices else 'face'} {missing[0]} (from 0), expected one")
+        means: Array = colors[corners].mean(axis=1) if of_vertices else colors
+        return means
+
+    def _set(self, material: typing.Optional[str], keep: typing.List[typing.Any]) -> lib.BpMeshSet:
+        """For the library; `keep` gets what must live until it has read the arrays."""
+        places = self._places()
+        corners = self._corners(len(places))
+        colors = self._colors(corners, len(places))
+        if corners.shape[1] == 4:
+            colors = np.repeat(colors, 2, axis=0) if colors is not None and colors.ndim == 2 else colors
+            corners = corners[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+        triangles = np.ascontiguousarray(corners, np.uint32)
+        keep += [places, triangles, colors]
+        return lib.BpMeshSet(len(places), len(triangles), rows(places, True), c.c_void_p(triangles.ctypes.data),
+                             rows(colors, colors is not None and colors.ndim == 2),
+                             None if material is None else c_text("material", material), c_text("name", self.name))
