@@ -3,33 +3,19 @@
 
 #include "base/message_text.h"
 #include "material.h"
+#include "triangle_area.h"
+#include "triangle_overlap.h"
 #include "vector.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #define LEAST_AREA 0x1p-48 /* over the square of the longest side: what rounding could make of none */
-#define SAME_PLANE 1.0e-12 /* over the size */
-#define TOUCHES 1.0e-9     /* over the longest side: sides and corners that meet are no overlap */
 #define ON_CAMERA 1.0e-12  /* over the size */
-
-static void way(const double from[3], const double to[3], double v[3]) {
-    for (int a = 0; a < 3; a++) v[a] = to[a] - from[a];
-}
-
-/* Twice the area, along the outward normal; returns the longest side. */
-static double area_of(const BpTriangle *triangle, double area[3]) {
-    double b[3], c[3], d[3];
-    way(triangle->vertices[0], triangle->vertices[1], b);
-    way(triangle->vertices[0], triangle->vertices[2], c);
-    way(triangle->vertices[1], triangle->vertices[2], d);
-    bp_cross(b, c, area);
-    return fmax(fmax(bp_length(b), bp_length(c)), bp_length(d));
-}
 
 bool bp_triangle_has_area(const BpTriangle *triangle) {
     double area[3];
-    const double longest = area_of(triangle, area);
+    const double longest = bp_triangle_area(triangle, area);
     return bp_length(area) > LEAST_AREA * longest * longest && longest >= BP_TRIANGLE_SIDE_MIN;
 }
 
@@ -149,97 +135,35 @@ static BpStatus find_open_edge(const BpScene *scene, size_t glass, BpFault *faul
 
 /* ---- nothing lies on glass ---- */
 
-typedef struct Span {
-    double low, high; /* along x */
-    uint32_t triangle;
-} Span;
-
-static int compare_spans(const void *a_pointer, const void *b_pointer) {
-    const Span *a = a_pointer, *b = b_pointer;
-    if (a->low != b->low) return a->low < b->low ? -1 : 1;
-    return a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
-}
-
-/* Whether some line along a side of `a`, whose plane both lie in, has all of `b` outside. */
-static bool apart(const BpTriangle *a, const BpTriangle *b, const double normal[3], double slack) {
-    for (int k = 0; k < 3; k++) {
-        double side[3], across[3], nearest = INFINITY;
-        way(a->vertices[k], a->vertices[(k + 1) % 3], side);
-        bp_cross(side, normal, across); /* outward */
-        bp_normalize(across);
-        for (int j = 0; j < 3; j++) {
-            double from[3];
-            way(a->vertices[k], b->vertices[j], from);
-            nearest = fmin(nearest, bp_dot(from, across));
-        }
-        if (nearest >= -slack) return true;
-    }
-    return false;
-}
-
-static bool overlap(const BpTriangle *a, const BpTriangle *b) {
-    double normal[3], other[3], size = 0;
-    for (int axis = 1; axis < 3; axis++) {
-        const double low = fmin(fmin(a->vertices[0][axis], a->vertices[1][axis]), a->vertices[2][axis]);
-        const double high = fmax(fmax(a->vertices[0][axis], a->vertices[1][axis]), a->vertices[2][axis]);
-        int below = 0, above = 0;
-        for (int k = 0; k < 3; k++) {
-            below += b->vertices[k][axis] < low;
-            above += b->vertices[k][axis] > high;
-        }
-        if (below == 3 || above == 3) return false;
-    }
-    const double longest = fmax(area_of(a, normal), area_of(b, other));
-    bp_normalize(normal);
-    bp_normalize(other);
-    for (int k = 0; k < 3; k++) size = fmax(size, fmax(bp_length(a->vertices[k]), bp_length(b->vertices[k])));
-    for (int k = 0; k < 3; k++) {
-        double from[3];
-        way(a->vertices[0], b->vertices[k], from);
-        if (fabs(bp_dot(from, normal)) > SAME_PLANE * (size + longest)) return false;
-    }
-    return !apart(a, b, normal, TOUCHES * longest) && !apart(b, a, other, TOUCHES * longest);
-}
-
 static BpStatus find_overlap(const BpScene *scene, BpFault *fault, BpError *err) {
-    const size_t count = scene->triangle_count;
-    Span *spans = malloc(count * sizeof *spans);
-    if (spans == NULL)
-        return bp_fail(err, BP_ERR_MEMORY, "out of memory while comparing %zu triangles", count);
-    for (size_t i = 0; i < count; i++) {
-        const double(*v)[3] = (const double(*)[3])scene->triangles[i].vertices;
-        spans[i] =
-            (Span){fmin(fmin(v[0][0], v[1][0]), v[2][0]), fmax(fmax(v[0][0], v[1][0]), v[2][0]), (uint32_t)i};
-    }
-    qsort(spans, count, sizeof *spans, compare_spans);
-    for (size_t i = 0; i < count && fault->subject == BP_FAULT_NONE; i++)
-        for (size_t j = i + 1; j < count && spans[j].low <= spans[i].high; j++) {
-            const size_t one = spans[i].triangle, two = spans[j].triangle;
-            if (!is_glass(scene, one) && !is_glass(scene, two)) continue;
-            if (!overlap(&scene->triangles[one], &scene->triangles[two])) continue;
-            char a[BP_SPHERE_NAME_SIZE], b[BP_SPHERE_NAME_SIZE];
-            const size_t later = one > two ? one : two;
-            fault->index = later;
-            bp_fault_set(fault, BP_FAULT_TRIANGLE, "",
-                         "found %s and %s in one plane, one on the other, and light passes through one of "
-                         "them; expected a gap: move one by a millionth of its size",
-                         bp_triangle_name(scene, one + two - later, a), bp_triangle_name(scene, later, b));
-            break;
-        }
-    free(spans);
+    bool *const glass = malloc(scene->triangle_count * sizeof *glass);
+    BpOverlap overlap = {0};
+    if (glass == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory while comparing %zu triangles",
+                       scene->triangle_count);
+    for (size_t i = 0; i < scene->triangle_count; i++) glass[i] = is_glass(scene, i);
+    const BpStatus status = bp_find_overlap(scene->triangles, glass, scene->triangle_count, &overlap, err);
+    free(glass);
+    if (status != BP_OK || !overlap.found) return status;
+    char a[BP_SPHERE_NAME_SIZE], b[BP_SPHERE_NAME_SIZE];
+    fault->index = overlap.other;
+    bp_fault_set(fault, BP_FAULT_TRIANGLE, "",
+                 "found %s and %s in one plane, one on the other, and light passes through one of "
+                 "them; expected a gap: move one by a millionth of its size",
+                 bp_triangle_name(scene, overlap.one, a), bp_triangle_name(scene, overlap.other, b));
     return BP_OK;
 }
 
 /* Whether a point lies on a triangle, by the areas of the three that it makes with the sides. */
 static bool holds_point(const BpTriangle *triangle, const double point[3]) {
     double area[3], from[3], size = bp_length(point);
-    const double longest = area_of(triangle, area), whole = bp_normalize(area);
-    way(triangle->vertices[0], point, from);
+    const double longest = bp_triangle_area(triangle, area), whole = bp_normalize(area);
+    bp_way(triangle->vertices[0], point, from);
     if (fabs(bp_dot(from, area)) > ON_CAMERA * (size + longest)) return false;
     for (int k = 0; k < 3; k++) {
         double a[3], b[3], part[3];
-        way(point, triangle->vertices[k], a);
-        way(point, triangle->vertices[(k + 1) % 3], b);
+        bp_way(point, triangle->vertices[k], a);
+        bp_way(point, triangle->vertices[(k + 1) % 3], b);
         bp_cross(a, b, part);
         if (bp_dot(part, area) < -ON_CAMERA * whole) return false;
     }
