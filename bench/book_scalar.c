@@ -299,7 +299,7 @@ int main(int argc, char **argv) {
     PeerRun run;
     peer_options(argc, argv, "tree|list", &options);
     if (options.method == NULL) options.method = "tree";
-    BpScene *scene = peer_load(&options, &run);
+    BpScene *scene = peer_load(&options, false, &run);
     Job job = {.scene = scene, .film = peer_film(scene), .seed = options.seed};
     peer_camera(scene, &job.camera);
 

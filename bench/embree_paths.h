@@ -44,8 +44,10 @@ typedef struct World {
     float sky_middle[3], sky_slope[3];                                        /* at y = 0; a unit of y */
     bool lens, center;
     uint32_t has, max_depth, seed;
-    float *points; /* sphere_count * 4: centre relative to lookfrom, |radius|; for Embree's vertex buffer */
-    uint32_t *surface; /* of a sphere: entry in the tables below; one more for the sky */
+    float *points;   /* sphere_count * 4: centre relative to lookfrom, |radius|; for Embree's vertex buffer */
+    float *vertices; /* triangle_count * 9, relative to lookfrom */
+    size_t shapes;   /* spheres, or, where there are none, triangles */
+    uint32_t *surface; /* of a shape: entry in the tables below; one more for the sky */
     float *values;     /* SURFACE_VALUES each: albedo r g b, fuzz or index, emit r g b, unused */
     uint32_t *flags;   /* kind and variants */
     /* Spheres far larger than most, few: met before the tree is entered, and not in it. */
@@ -62,7 +64,7 @@ typedef struct Batch {
     uint32_t *column, *sample, *depth;
     /* Set by the caller for each active lane: */
     float *t, *normal[3]; /* the normal outward, of any length */
-    uint32_t *sphere;     /* NO_HIT: none */
+    uint32_t *sphere;     /* or triangle; NO_HIT: none */
     uint32_t *huge; /* the huge sphere met at t before the caller traces: its hits must be nearer than t */
     /* Between the loops of a bounce: */
     float *random[3], *next[3], *uniform, *value, *cosine, *offset;

@@ -1,4 +1,5 @@
-/* embree_peer.c: the same scenes with Embree's sphere points, tuned as well as we can: the opponent.
+/* embree_peer.c: the same scenes with Embree's sphere points, or its triangles, tuned as well as we can: the
+ * opponent.
  *
  * In:    a scene file.   Out: one line of JSON (peer.h).
  * Knows: Embree 3's C interface.   Does not know: shading (embree_paths.h), ballpark's kernels.
@@ -99,6 +100,21 @@ static RTCScene build(RTCDevice device, const World *world, const Method *method
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, points, 0,
                                    4 * sizeof(float), world->scene->sphere_count);
+        rtcSetGeometryBuildQuality(geometry, quality);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene, geometry);
+        rtcReleaseGeometry(geometry);
+    }
+    if (world->scene->triangle_count > 0) {
+        /* Vertices that triangles share are written again for each: Embree copies them into its leaves. */
+        const size_t count = world->scene->triangle_count;
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        uint32_t *corners = peer_allocate(3 * count, sizeof *corners);
+        for (size_t i = 0; i < 3 * count; i++) corners[i] = (uint32_t)i;
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, world->vertices, 0,
+                                   3 * sizeof(float), 3 * count);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, corners, 0,
+                                   3 * sizeof *corners, count);
         rtcSetGeometryBuildQuality(geometry, quality);
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(scene, geometry);
@@ -279,7 +295,7 @@ int main(int argc, char **argv) {
     options.lanes = (options.lanes + LANE_BLOCK - 1) / LANE_BLOCK * LANE_BLOCK;
     if (options.lanes > LANES_MAX) options.lanes = LANES_MAX;
 
-    BpScene *scene = peer_load(&options, &run);
+    BpScene *scene = peer_load(&options, true, &run);
     const Method method = parse_method(options.method);
     Job job = {.world = world_create(scene, options.seed, method.huge),
                .method = method,

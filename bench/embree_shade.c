@@ -121,7 +121,7 @@ static void draw_random(const Batch *batch, uint32_t first_pixel, uint32_t seed)
 /* What the spheres are made of, and the radiance found there or in the sky. */
 static void gather_surfaces(const Batch *batch, const World *world) {
     const uint32_t count = batch->active, has = world->has, max_depth = world->max_depth;
-    const uint32_t sky_sphere = (uint32_t)world->scene->sphere_count; /* a miss meets the sky's surface */
+    const uint32_t sky_sphere = (uint32_t)world->shapes; /* a miss meets the sky's surface */
     const uint32_t *restrict const surface = world->surface, *restrict const flags = world->flags;
     const float *restrict const values = world->values;
     FLOATS(value, batch->value);

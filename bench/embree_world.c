@@ -98,7 +98,9 @@ World world_create(const BpScene *scene, uint64_t seed, bool huge) {
         world.sky_slope[k] = (float)(0.5 * (top - bottom));
     }
     /* Surfaces: each material as it is and inside out, then one for every sphere with a colour of its own. */
-    const size_t spheres = scene->sphere_count, materials = scene->material_count;
+    const size_t spheres = scene->sphere_count, triangles = scene->triangle_count,
+                 materials = scene->material_count;
+    world.shapes = spheres + triangles;
     size_t own = 0;
     for (size_t i = 0; i < spheres; i++) own += scene->spheres[i].albedo != BP_NO_ALBEDO;
     const size_t surfaces = 2 * materials + own + 1; /* the last is the sky's */
@@ -106,8 +108,9 @@ World world_create(const BpScene *scene, uint64_t seed, bool huge) {
     world.flags = peer_allocate(surfaces, sizeof *world.flags);
     world.flags[surfaces - 1] = BP_MATERIAL_DIFFUSE_LIGHT; /* scatters nothing; its numbers are all 0 */
     world.points = peer_allocate(spheres, 4 * sizeof(float));
-    world.surface = peer_allocate(spheres + 1, sizeof *world.surface);
-    world.surface[spheres] = (uint32_t)surfaces - 1;
+    world.vertices = peer_allocate(triangles, 9 * sizeof(float));
+    world.surface = peer_allocate(world.shapes + 1, sizeof *world.surface);
+    world.surface[world.shapes] = (uint32_t)surfaces - 1;
     for (size_t m = 0; m < 2 * materials; m++) set_surface(&world, m, &scene->materials[m / 2], m & 1);
     size_t next = 2 * materials;
     for (size_t i = 0; i < spheres; i++) {
@@ -127,6 +130,13 @@ World world_create(const BpScene *scene, uint64_t seed, bool huge) {
             world.surface[i] = (uint32_t)next++;
         }
     }
-    if (huge) choose_huge(&world);
+    for (size_t i = 0; i < triangles; i++) {
+        const BpTriangle *triangle = &scene->triangles[i];
+        world.has |= material_has(&scene->materials[triangle->material]);
+        for (size_t k = 0; k < 9; k++)
+            world.vertices[9 * i + k] = (float)(triangle->vertices[k / 3][k % 3] - camera.origin[k % 3]);
+        world.surface[spheres + i] = 2 * triangle->material;
+    }
+    if (huge && spheres > 0) choose_huge(&world);
     return world;
 }

@@ -97,7 +97,7 @@ usage:
     exit(2);
 }
 
-BpScene *peer_load(const PeerOptions *options, PeerRun *run) {
+BpScene *peer_load(const PeerOptions *options, bool triangles, PeerRun *run) {
     BpScene *scene = NULL;
     BpError err = {0};
     const double start = bp_clock_seconds();
@@ -110,6 +110,11 @@ BpScene *peer_load(const PeerOptions *options, PeerRun *run) {
     if (scene->moving_count > 0 || scene->medium_count > 0) {
         fprintf(stderr, "%s: found media or spheres that move, expected none: peers have neither\n",
                 options->scene_path);
+        exit(2);
+    }
+    if (scene->triangle_count > 0 && (!triangles || scene->sphere_count > 0)) {
+        fprintf(stderr, "%s: found triangles, expected %s\n", options->scene_path,
+                triangles ? "either spheres or triangles" : "spheres: this peer has no triangles");
         exit(2);
     }
     for (size_t m = 0; m < scene->material_count; m++) {
@@ -248,15 +253,16 @@ void peer_report(const char *peer, const PeerOptions *options, const BpScene *sc
     }
     const uint64_t samples = (uint64_t)pixels * film->samples;
     printf("{\"peer\": \"%s\", \"method\": \"%s\", \"width\": %u, \"height\": %u, \"samples_per_pixel\": %u, "
-           "\"max_depth\": %u, \"spheres\": %zu, \"threads\": %u, \"samples\": %llu, \"rays\": %llu, "
+           "\"max_depth\": %u, \"spheres\": %zu, \"triangles\": %zu, \"threads\": %u, \"samples\": %llu, "
+           "\"rays\": %llu, "
            "\"seconds\": %.6f, \"cpu_seconds\": %.6f, \"load_seconds\": %.6f, \"build_seconds\": %.6f, "
            "\"structure_bytes\": %llu, \"mean_radiance\": [%.9f, %.9f, %.9f], "
            "\"standard_error\": [%.3e, %.3e, %.3e]}\n",
            peer, options->method, film->width, film->height, film->samples, scene->camera.max_depth,
-           scene->sphere_count, options->threads, (unsigned long long)samples, (unsigned long long)run->rays,
-           run->seconds, run->cpu_seconds, run->load_seconds, run->build_seconds,
-           (unsigned long long)run->structure_bytes, mean[0] / (double)pixels, mean[1] / (double)pixels,
-           mean[2] / (double)pixels, sqrt(square[0]) / (double)pixels, sqrt(square[1]) / (double)pixels,
-           sqrt(square[2]) / (double)pixels);
+           scene->sphere_count, scene->triangle_count, options->threads, (unsigned long long)samples,
+           (unsigned long long)run->rays, run->seconds, run->cpu_seconds, run->load_seconds,
+           run->build_seconds, (unsigned long long)run->structure_bytes, mean[0] / (double)pixels,
+           mean[1] / (double)pixels, mean[2] / (double)pixels, sqrt(square[0]) / (double)pixels,
+           sqrt(square[1]) / (double)pixels, sqrt(square[2]) / (double)pixels);
     if (options->picture_path != NULL) write_picture(film, options->picture_path);
 }

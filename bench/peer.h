@@ -44,8 +44,9 @@ typedef struct PeerRun {
 
 /* Fills `options` from the command line; prints usage and exits with 2 when it is not understood. */
 void peer_options(int argc, char **argv, const char *methods, PeerOptions *options);
-/* Loads the scene and applies width, samples and depth; prints the error and exits when it cannot. */
-BpScene *peer_load(const PeerOptions *options, PeerRun *run);
+/* Loads the scene and applies width, samples and depth; prints the error and exits when it cannot.
+ * `triangles`: whether the peer draws scenes of triangles alone, beside those of spheres. */
+BpScene *peer_load(const PeerOptions *options, bool triangles, PeerRun *run);
 void peer_camera(const BpScene *scene, PeerCamera *camera);
 /* Exits with 1 when memory runs out, as everything here does. */
 void *peer_allocate(size_t count, size_t size);

@@ -25,6 +25,7 @@
 #include "cli/terminal/page.h"
 #include "cli/terminal/table.h"
 #include "film/film.h"
+#include "formats/bumpy_ball.h"
 #include "formats/field.h"
 #include "render/render.h"
 #include "scene/scene.h"
@@ -44,7 +45,8 @@
  * diffuse    the same spheres with metal and glass made matte: short paths, one kind of material
  * glass      the same spheres, all glass except the ground: long paths that diverge
  * field-N    N matte spheres of random colours in a cube, seen from outside; similar at any N, so that the
- *            figures show what the number of spheres costs */
+ *            figures show what the number of spheres costs
+ * ball-N     a matte ball with bumps, of N triangles */
 enum { GRID = 11, SEED = 1, WIDTH = 400, SAMPLES = 64 };
 
 static const char field_document[] =
@@ -57,6 +59,15 @@ static const char field_document[] =
     "  \"clouds\": [ { \"file\": \"%s.ply\", \"material\": \"clay\" } ]\n"
     "}\n";
 
+static const char ball_document[] =
+    "{\n"
+    "  \"format\": 1,\n"
+    "  \"title\": \"bench: %s\",\n"
+    "  \"camera\": { \"image_width\": 400, \"aspect_ratio\": [16, 9], \"samples_per_pixel\": 64,\n"
+    "              \"max_depth\": 50, \"vfov\": 30, \"lookfrom\": [2.4, 1.5, 2.6], \"lookat\": [0, 0, 0] },\n"
+    "  \"materials\": { \"clay\": { \"type\": \"lambertian\", \"albedo\": [0.7, 0.6, 0.5] } },\n"
+    "  \"triangles\": [\n";
+
 /* The names that are measured when none is given, ended by NULL. */
 static const char *const fixed_scene_names[] = {"cover", "diffuse", "glass", "field-1e4", "field-1e6", NULL};
 
@@ -68,10 +79,19 @@ static uint64_t field_count(const char *name) {
     return *end == '\0' && count >= 1 && count <= BP_SPHERES_MAX ? (uint64_t)count : 0;
 }
 
-/* "cover", "diffuse", "glass", or "field-" and a number of spheres: "field-1e6". */
+/* The number of triangles of a ball; 0: not a ball. */
+static uint64_t ball_count(const char *name) {
+    if (strncmp(name, "ball-", 5) != 0 || name[5] < '1' || name[5] > '9') return 0;
+    char *end = NULL;
+    const uint64_t count = strtoull(name + 5, &end, 10);
+    return *end == '\0' && bp_ball_has(count) ? count : 0;
+}
+
+/* "cover", "diffuse", "glass", "field-" and a number of spheres ("field-1e6"), or "ball-" and one of
+ * triangles. */
 static bool is_fixed_scene(const char *name) {
     return strcmp(name, "cover") == 0 || strcmp(name, "diffuse") == 0 || strcmp(name, "glass") == 0 ||
-           field_count(name) != 0;
+           field_count(name) != 0 || ball_count(name) != 0;
 }
 
 static BpStatus join(const char *folder, const char *name, const char *ending, char *path, size_t size,
@@ -136,11 +156,26 @@ static BpStatus write_field(const BpCommandLine *line, const char *name, const c
     return bp_line_write(line, path, print_field_document, name, err);
 }
 
+static BpStatus print_ball_document(const void *name, FILE *out, BpError *err) {
+    fprintf(out, ball_document, (const char *)name);
+    BP_TRY(bp_ball_print(ball_count(name), "clay", out, err));
+    if (fputs("  ]\n}\n", out) >= 0) return BP_OK;
+    return bp_fail(err, BP_ERR_FILE, "%s", strerror(errno));
+}
+
+static BpStatus write_ball(const BpCommandLine *line, const char *name, const char *path, BpError *err) {
+    if (access(path, R_OK) == 0) return BP_OK;
+    BP_TRY(bp_line_check_output(line, path, err));
+    bp_line_say_overwritten(line, path);
+    return bp_line_write(line, path, print_ball_document, name, err);
+}
+
 /* Writes the scene called `name` into `folder`, as NAME.json (a field: NAME.ply as well), and its path to
- * `path`. A field whose two files are already there is left as it is, since it takes long. */
+ * `path`. A field or a ball whose files are already there is left as it is, since it takes long. */
 static BpStatus write_fixed_scene(const BpCommandLine *line, const char *name, const char *folder, char *path,
                                   size_t path_size, BpError *err) {
     BP_TRY(join(folder, name, ".json", path, path_size, err));
+    if (ball_count(name) != 0) return write_ball(line, name, path, err);
     return field_count(name) != 0 ? write_field(line, name, folder, path, err)
                                   : write_cover(line, name, path, err);
 }
@@ -177,7 +212,7 @@ typedef struct Run {
     double values[MEASURES];
     uint64_t samples, segments;
     double mean[3], nrmse; /* of the whole run */
-    size_t spheres;
+    size_t spheres, triangles;
     uint32_t width, height, max_depth;
     BpRenderReport report; /* its texts are not valid any more */
 } Run;
@@ -269,6 +304,7 @@ static BpStatus run_once(const BpCommandLine *line, const char *path, const BpDe
     if (status != BP_OK) goto done;
     run->values[MEASURE_LOAD] = bp_clock_seconds() - start;
     run->spheres = scene->sphere_count;
+    run->triangles = scene->triangle_count;
     run->width = scene->camera.width;
     run->height = scene->camera.height;
 
@@ -315,10 +351,13 @@ static Figure figure(const Bench *bench, const Entry *entry, int measure) {
                     bp_quantile(values, count, 0.75)};
 }
 
+static size_t shapes(const Entry *entry) {
+    return entry->runs[0].spheres + entry->runs[0].triangles;
+}
+
+/* Or of a triangle. */
 static double bytes_per_sphere(const Entry *entry) {
-    return entry->runs[0].spheres > 0
-               ? (double)entry->runs[0].report.scene_bytes / (double)entry->runs[0].spheres
-               : 0.0;
+    return shapes(entry) > 0 ? (double)entry->runs[0].report.scene_bytes / (double)shapes(entry) : 0.0;
 }
 
 /* ---- the table ---- */
@@ -337,7 +376,7 @@ static void fill_row(const Bench *bench, const Entry *entry, const BpTable *tabl
     const Figure segments = figure(bench, entry, MEASURE_SEGMENTS);
     const size_t size = BP_CELL_SIZE;
     bp_escape(entry->name, bp_table_cell(table, row, 0), size);
-    bp_format_whole(entry->runs[0].spheres, bp_table_cell(table, row, 1), size);
+    bp_format_whole(shapes(entry), bp_table_cell(table, row, 1), size);
     short_time(figure(bench, entry, MEASURE_LOAD).median, bp_table_cell(table, row, 2), size);
     short_time(figure(bench, entry, MEASURE_TREE).median, bp_table_cell(table, row, 3), size);
     short_time(figure(bench, entry, MEASURE_KERNEL).median, bp_table_cell(table, row, 4), size);
@@ -351,7 +390,7 @@ static void fill_row(const Bench *bench, const Entry *entry, const BpTable *tabl
 }
 
 static BpStatus print_table(const BpCommandLine *line, const Bench *bench, BpError *err) {
-    static const char *const head[COLUMNS] = {"scene",  "spheres",    "load",        "tree",
+    static const char *const head[COLUMNS] = {"scene",  "shapes",     "load",        "tree",
                                               "kernel", "Msamples/s", "Msegments/s", "ns/segm.",
                                               "CPU ns", "spread",     "B/sphere"};
     static const bool right[COLUMNS] = {false, true, true, true, true, true, true, true, true, true, true};
@@ -400,10 +439,10 @@ static json_t *entry_json(const Bench *bench, const Entry *entry) {
         segments += entry->runs[r].segments;
     }
     json_t *nrmse = isfinite(run->nrmse) ? json_real(run->nrmse) : json_null();
-    json_t *json = json_pack("{s:o, s:o, s:I, s:I, s:I, s:I}", "name", bp_json_text(entry->name), "path",
-                             bp_json_text(entry->path), "spheres", (json_int_t)run->spheres, "width",
-                             (json_int_t)run->width, "height", (json_int_t)run->height, "max_depth",
-                             (json_int_t)run->max_depth);
+    json_t *json = json_pack("{s:o, s:o, s:I, s:I, s:I, s:I, s:I}", "name", bp_json_text(entry->name), "path",
+                             bp_json_text(entry->path), "spheres", (json_int_t)run->spheres, "triangles",
+                             (json_int_t)run->triangles, "width", (json_int_t)run->width, "height",
+                             (json_int_t)run->height, "max_depth", (json_int_t)run->max_depth);
     for (int m = 0; m < MEASURES; ++m)
         json = bp_json_join(json, json_pack("{s:o}", measure_names[m], figure_json(bench, entry, m)));
     return bp_json_join(json, json_pack("{s:f, s:I, s:f, s:[fff], s:o, s:I}", "segments_per_sample",
@@ -464,7 +503,7 @@ static BpStatus prepare(const BpCommandLine *line, Bench *bench, BpError *err) {
                 return bp_fail(
                     err, BP_ERR_USAGE,
                     "%.400s: no such file, and no fixed scene has this name; those are cover, diffuse, "
-                    "glass and field-N, such as field-1e6",
+                    "glass and field-N, such as field-1e6; and ball-N, such as ball-81920",
                     entry->name);
             snprintf(entry->path, sizeof entry->path, "%s", entry->name);
             continue;

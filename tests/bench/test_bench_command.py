@@ -28,14 +28,21 @@ def close(a, b, tolerance=1e-9):
 
 # The fixed scenes on request, and nothing else.
 scenes = os.path.join(folder, "scenes")
-done = run("cover", "diffuse", "glass", "field-500", "-o", scenes)
+done = run("cover", "diffuse", "glass", "field-500", "ball-80", "-o", scenes)
 assert done.stdout == ""
-assert sorted(os.listdir(scenes)) == ["cover.json", "diffuse.json", "field-500.json", "field-500.ply", "glass.json"]
+assert sorted(os.listdir(scenes)) == ["ball-80.json", "cover.json", "diffuse.json", "field-500.json", "field-500.ply", "glass.json"]
 cover, diffuse, glass = (json.load(open(os.path.join(scenes, n + ".json"))) for n in ("cover", "diffuse", "glass"))
 assert len(cover["spheres"]) == len(diffuse["spheres"]) == len(glass["spheres"]) > 450
 assert {m["type"] for m in diffuse["materials"].values()} == {"lambertian"}
 assert sum(m["type"] == "lambertian" for m in glass["materials"].values()) == 1
 assert [s["center"] for s in cover["spheres"]] == [s["center"] for s in glass["spheres"]]
+# The ball is closed and seen from outside: each edge once each way, and corners run counter-clockwise.
+corners = [[tuple(v) for v in t["vertices"]] for t in json.load(open(os.path.join(scenes, "ball-80.json")))["triangles"]]
+edges = [(t[k], t[k - 2]) for t in corners for k in range(3)]
+assert len(corners) == 80 and len({v for t in corners for v in t}) == 42
+assert len(set(edges)) == 240 and {(b, a) for a, b in edges} == set(edges)
+for (ax, ay, az), (bx, by, bz), (cx, cy, cz) in corners:
+    assert ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx) > 0
 
 # A measurement: a file and a fixed scene, small and short.
 path = os.path.join(scenes, "cover.json")
@@ -70,7 +77,8 @@ assert run(*options, "-q").stdout == ""
 
 # What cannot be measured is refused by name.
 assert "nowhere.json" in run("nowhere.json", code=2).stderr
-assert "field-0" in run("field-0", code=2).stderr
+for name in ("field-0", "ball-0", "ball-81", "ball-320x"):
+    assert name in run(name, code=2).stderr
 assert "depth" in run("field-500", "--depth", "0", "--width", "20", "-q", code=2).stderr
 assert os.listdir(folder) == ["scenes"]
 

@@ -37,7 +37,7 @@ def ours(path, folder):
 
 
 with tempfile.TemporaryDirectory() as folder:
-    subprocess.run([program, "bench", "cover", "diffuse", "glass", "field-2000", "-o", folder], check=True)
+    subprocess.run([program, "bench", "cover", "diffuse", "glass", "field-2000", "ball-1280", "-o", folder], check=True)
     paths = [os.path.join(folder, name + ".json") for name in ("cover", "diffuse", "glass", "field-2000")]
     # every lobe, fuzz, Fresnel and total reflection that the book has
     paths += [os.path.join(scenes, name + ".json") for name in
@@ -47,13 +47,16 @@ with tempfile.TemporaryDirectory() as folder:
     refused = subprocess.run([os.path.join(peers, "book_scalar"), os.path.join(scenes, "checkers.json"), "--method", "list"],
                              capture_output=True, text=True, check=False)
     assert refused.returncode == 2 and "found textures, expected none" in refused.stderr, refused
+    ball = os.path.join(folder, "ball-1280.json")
+    refused = subprocess.run([os.path.join(peers, "book_scalar"), ball], capture_output=True, text=True, check=False)
+    assert refused.returncode == 2 and "found triangles, expected spheres" in refused.stderr, refused
     embree = os.path.exists(os.path.join(peers, "embree_peer"))
-    for path in paths:
+    for path in paths + [ball] * embree:
         means, rays = ours(path, folder)
-        entries = [("book tree", *peer("book_scalar", path, "--method", "tree", "--seed", "1"))]
+        entries = [] if path == ball else [("book tree", *peer("book_scalar", path, "--method", "tree", "--seed", "1"))]
         if "cover" in path or "glass.json" in path:
             entries.append(("book list", *peer("book_scalar", path, "--method", "list", "--seed", "2")))
-        methods = ("1", "16,coherent", "np", "np,huge") if "cover" in path else ("np,robust,huge",)
+        methods = ("1", "16,coherent", "np", "np,huge") if "cover" in path or path == ball else ("np,robust,huge",)
         for method in methods if embree else ():
             entries.append((f"embree {method}", *peer("embree_peer", path, "--method", method, "--seed", "3")))
         for name, mean, error, peer_rays in entries:
