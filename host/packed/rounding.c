@@ -30,7 +30,7 @@ static double surface_shift(const double origin[3], const BpSphere *sphere, cons
 }
 
 typedef struct Worst {
-    size_t sphere, count;
+    size_t sphere, count; /* or triangle */
     double ratio;
 } Worst;
 
@@ -46,6 +46,36 @@ static const char *others(const Worst *worst, char text[48]) {
     text[0] = '\0';
     if (worst->count > 1) snprintf(text, 48, " (and %zu more)", worst->count - 1);
     return text;
+}
+
+/* How far rounding may move a vertex of a triangle, as a part of its shortest edge. The vertices that two
+ * triangles share move together, so a mesh has no cracks, but shapes change. */
+static double vertex_shift(const double origin[3], const BpTriangle *triangle) {
+    double farthest = 0, shortest = INFINITY;
+    for (int k = 0; k < 3; ++k) {
+        const double *from = triangle->vertices[k], *to = triangle->vertices[(k + 1) % 3];
+        double off = 0, edge = 0;
+        for (int a = 0; a < 3; ++a) {
+            const double v = from[a] - origin[a];
+            off += (as_float(v) - v) * (as_float(v) - v);
+            edge += (to[a] - from[a]) * (to[a] - from[a]);
+        }
+        farthest = fmax(farthest, off);
+        shortest = fmin(shortest, edge);
+    }
+    return sqrt(farthest / shortest);
+}
+
+static void add_vertices(const BpScene *scene, const double origin[3], BpRoundingWarnings *limits) {
+    Worst moved = {0};
+    char more[48], name[BP_SPHERE_NAME_SIZE];
+    for (size_t i = 0; i < scene->triangle_count; ++i)
+        note(&moved, i, vertex_shift(origin, &scene->triangles[i]), BP_ROUNDING_VERTEX);
+    if (moved.count == 0) return;
+    snprintf(limits->remedy[limits->count], sizeof limits->remedy[0], "a camera closer to it");
+    snprintf(limits->text[limits->count++], sizeof limits->text[0],
+             "a vertex of %s%s is displaced by %.2g of the shortest edge in single precision",
+             bp_triangle_name(scene, moved.sphere, name), others(&moved, more), moved.ratio);
 }
 
 /* A shell's wall: two dielectrics around one centre, found by sorting on the rounded centre and the radius.
@@ -113,7 +143,7 @@ static void add_lens(const BpCamera *camera, BpRoundingWarnings *limits) {
 
 void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundingWarnings *limits) {
     memset(limits, 0, sizeof *limits);
-    if (precision == BP_PRECISION_DOUBLE || scene->sphere_count == 0) return;
+    if (precision == BP_PRECISION_DOUBLE || bp_scene_shapes(scene) == 0) return;
     Worst off_place = {0}, contact = {0}, thin = {0};
     double smallest = INFINITY, wall = 0;
     size_t smallest_sphere = 0;
@@ -159,6 +189,7 @@ void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundin
                  "its thickness in single precision",
                  bp_sphere_name(scene, thin.sphere, name), others(&thin, more), wall, thin.ratio);
     }
+    add_vertices(scene, origin, limits);
     add_lens(&scene->camera, limits);
 }
 

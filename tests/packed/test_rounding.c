@@ -38,6 +38,26 @@ static void off_its_place(void **state) {
     assert_int_equal(limits_of("\"lookfrom\":[100000.0,0,1]", far, BP_PRECISION_SINGLE).count, 0);
 }
 
+/* 100000.003 becomes 100000, 0.003 away. */
+static void off_their_vertices(void **state) {
+    (void)state;
+    const char *small = "],\"triangles\":[{\"material\":\"m\",\"vertices\":"
+                        "[[100000.003,0,0],[100000.003,0.2,0],[100000.003,0,1]]}",
+               *large = "],\"triangles\":[{\"material\":\"m\",\"vertices\":"
+                        "[[100000.003,0,0],[100000.003,0.4,0],[100000.003,0,1]]}",
+               *lens = "\"focus_dist\":10,\"aperture\":1e10";
+    const BpRoundingWarnings warned = limits_of("", small, BP_PRECISION_SINGLE);
+    assert_int_equal(warned.count, 1);
+    assert_string_equal(warned.text[0],
+                        "a vertex of triangles[0] is displaced by 0.015 of the shortest edge in "
+                        "single precision");
+    assert_string_equal(warned.remedy[0], "a camera closer to it");
+    assert_int_equal(limits_of("", large, BP_PRECISION_SINGLE).count, 0);
+    assert_int_equal(limits_of("", small, BP_PRECISION_DOUBLE).count, 0);
+    assert_int_equal(limits_of("\"lookfrom\":[100000.0,0,1]", small, BP_PRECISION_SINGLE).count, 0);
+    assert_int_equal(limits_of(lens, large, BP_PRECISION_SINGLE).count, 1); /* no sphere is needed for that */
+}
+
 /* The lens at which a tenth of a pixel is passed: 100 pixels are 20 high at 10, and 0.02 is 2^-24 of 335544.
  */
 static void large_lens(void **state) {
@@ -107,8 +127,9 @@ static void thin_walls(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(off_its_place), cmocka_unit_test(large_lens),
-                                       cmocka_unit_test(off_its_neighbours),
-                                       cmocka_unit_test(beads_on_the_ground), cmocka_unit_test(thin_walls)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(off_its_place),       cmocka_unit_test(off_their_vertices),
+        cmocka_unit_test(large_lens),          cmocka_unit_test(off_its_neighbours),
+        cmocka_unit_test(beads_on_the_ground), cmocka_unit_test(thin_walls)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
