@@ -422,9 +422,9 @@ BpTreeItem bp_tree_triangle_item(const BpScene *scene, uint32_t triangle, const 
     return item;
 }
 
-/* Narrowed first, vertices are exact. Widened by two units in the last place of a plane, so that a box
- * without thickness has some, and by 8 of the longest side, since a hit may lie that far off in single
- * precision. */
+/* Narrowed first, vertices are exact; a lane without a triangle has NaN. Widened by two units in the last
+ * place of a plane, so that a box without thickness has some, and by 8 of the longest side, since a hit may
+ * lie that far off in single precision. */
 BpBounds bp_tree_write_triangles(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
                                  uint32_t count) {
     BpTree *tree = writer->tree;
@@ -441,7 +441,7 @@ BpBounds bp_tree_write_triangles(const BpTreeWriter *writer, uint32_t leaf, cons
             for (uint32_t k = 0; k < 3; ++k) {
                 const size_t place = base + (3 * k + a) * width + lane;
                 bp_reals_store(tree->triangles, single, place,
-                               t->vertices[lane < count ? k : 0][a] - writer->origin[a]);
+                               lane < count ? t->vertices[k][a] - writer->origin[a] : NAN);
                 const double stored = bp_reals_load(tree->triangles, single, place);
                 own.low[a] = fmin(own.low[a], stored);
                 own.high[a] = fmax(own.high[a], stored);

@@ -6,9 +6,11 @@
 #if EFFECT_TRIANGLES
 #define TRIANGLES_PARAMETERS SCENE_ARRAYS_OF_TRIANGLES(SPLIT_PARAMETER) uint first_triangles,
 #define TRIANGLES_ARGUMENTS SCENE_ARRAYS_OF_TRIANGLES(SPLIT_ARGUMENT) first_triangles,
+#define WITH_SHEAR(shear) shear,
 #else
 #define TRIANGLES_PARAMETERS
 #define TRIANGLES_ARGUMENTS
+#define WITH_SHEAR(shear)
 #endif
 
 typedef struct Geometry {

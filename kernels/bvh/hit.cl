@@ -16,7 +16,9 @@
 #define is_triangle LANED(is_triangle)
 #define load_triangle LANED(load_triangle)
 #define load_triangle_if LANED(load_triangle_if)
+#define shear_at_triangles LANED(shear_at_triangles)
 #define intersect_triangle LANED(intersect_triangle)
+#define intersect_left_triangle LANED(intersect_left_triangle)
 #define surface_of_triangle LANED(surface_of_triangle)
 
 typedef struct Hit {
@@ -118,15 +120,41 @@ static Triangle load_triangle_if(const Geometry *geometry, vbool wanted, vuint s
     return load_triangle(geometry, choose_uint(wanted, slot, splat_uint(geometry->first_triangles * TREE_WIDTH)));
 }
 
-/* Decides about a candidate. */
-FORCE_INLINE static void intersect_triangle(const Geometry *geometry, const Ray *ray, vbool active, const Triangle *triangle,
-                                            vuint slot, Hit *hit) {
+/* What triangles need of a ray, once a ray. */
+static Shear shear_at_triangles(const Geometry *geometry, const Ray *ray) {
+    Shear shear = shear_of(ray);
+    const vbool leaves = is_triangle(geometry, ray->own_slot);
+    if (any_lane(leaves)) {
+        const Triangle left = load_triangle_if(geometry, leaves, ray->own_slot);
+        shear.doubt = choose(leaves, doubt_of(ray, &left), shear.doubt);
+    }
+    return shear;
+}
+
+#if ROBUST_SHAPES
+/* Decides about candidates of which triangle_decide is doubtful. */
+static void intersect_left_triangle(const Geometry *geometry, const Ray *ray, const Shear *shear, vbool doubtful,
+                                    const Triangle *triangle, vuint slot, Hit *hit) {
     vrefined t;
     vbool enters;
-    const vbool leaves = active & is_triangle(geometry, ray->own_slot);
-    const Triangle left = load_triangle_if(geometry, leaves, ray->own_slot);
-    const vbool found = triangle_intersect(ray, triangle, &left, leaves, &t, &enters) & active;
+    const Triangle left = load_triangle_if(geometry, doubtful, ray->own_slot);
+    const vbool found = triangle_intersect(ray, shear, triangle, &left, doubtful, &t, &enters) & doubtful;
     keep_closer(geometry, found, t, slot, enters, hit);
+}
+#endif
+
+/* Decides about a candidate. */
+FORCE_INLINE static void intersect_triangle(const Geometry *geometry, const Ray *ray, const Shear *shear, vbool active,
+                                            const Triangle *triangle, vuint slot, Hit *hit) {
+    vrefined t;
+    vbool enters, doubtful;
+    const Triangle turned = turn_triangle(shear, triangle);
+    const vbool found = triangle_decide(shear, &turned, &t, &enters, &doubtful) & active;
+    keep_closer(geometry, found & vbool_not(doubtful), t, slot, enters, hit);
+#if ROBUST_SHAPES
+    doubtful = doubtful & active;
+    if (any_lane(doubtful)) intersect_left_triangle(geometry, ray, shear, doubtful, triangle, slot, hit);
+#endif
 }
 
 /* The point that was met, where it is a triangle's, and the outward unit normal there. */

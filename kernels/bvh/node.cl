@@ -29,40 +29,61 @@ static Ray ray_for_all(const Ray_one *one) {
 static vreal row_of(__global const real *rows, uint row) { return *(__global const vreal *)(rows + (size_t)row); }
 
 #if EFFECT_TRIANGLES
-/* The same for all triangles of a leaf, whose rows are chosen so that they come turned. */
-static Shear shear_for_all(const Shear_one *one) {
-    Shear shear;
-    shear.direction = vec3(splat(one->direction.x), splat(one->direction.y), splat(one->direction.z));
-    shear.origin = vec3(splat(one->origin.x), splat(one->origin.y), splat(one->origin.z));
-#if ROBUST_SHAPES
-    shear.x = splat(one->x);
-    shear.y = splat(one->y);
-    shear.inverse = splat(one->inverse);
-    shear.margin = splat(one->margin);
-#endif
+/* One ray at the triangles of leaves, whose rows are chosen so that they come turned. */
+typedef struct LeafShear {
+    real origin[3], slope[3], margin;
+    uint row[3]; /* of the first vertex's turned x, y and z, in reals from the leaf's first */
+} LeafShear;
+
+/* The row of the turned x: turn3 by numbers. */
+static uint turned_row(const Shear_one *shear) {
+    return (shear->along_x ? 1u : shear->along_y ? 2u : 0u) * (uint)TREE_WIDTH;
+}
+
+/* What follows from the first. */
+static void set_rows(LeafShear *shear, uint row) {
+    shear->row[0] = row;
+    shear->row[1] = row == 2 * TREE_WIDTH ? 0 : row + TREE_WIDTH;
+    shear->row[2] = row == 0 ? 2 * TREE_WIDTH : row - TREE_WIDTH;
+}
+
+static LeafShear leaf_shear(const Shear_one *one) {
+    LeafShear shear;
+    shear.origin[0] = one->origin.x;
+    shear.origin[1] = one->origin.y;
+    shear.origin[2] = one->origin.z;
+    shear.slope[0] = one->slope.x;
+    shear.slope[1] = one->slope.y;
+    shear.slope[2] = one->slope.z;
+    shear.margin = one->margin;
+    set_rows(&shear, turned_row(one));
     return shear;
 }
 
-/* Of a vertex that begins at a row, turned. */
-static Vec3 vertex_of_leaf(__global const real *leaf, const Shear_one *shear, uint row) {
-    const uint first = row * TREE_WIDTH;
-    const Vec3 v = vec3(row_of(leaf, first), row_of(leaf, first + TREE_WIDTH), row_of(leaf, first + 2 * TREE_WIDTH));
-    if (shear->along_x) return vec3(v.y, v.z, v.x);
-    if (shear->along_y) return vec3(v.z, v.x, v.y);
-    return v;
+static Vec3 vertex_of_leaf(__global const real *leaf, const LeafShear *shear, uint first) {
+    return vec3(row_of(leaf, first + shear->row[0]), row_of(leaf, first + shear->row[1]), row_of(leaf, first + shear->row[2]));
 }
 
-/* The triangles of a leaf that the ray may meet before `bound`. An empty lane is a point, which nothing meets. */
-FORCE_INLINE static child_mask triangle_candidates(const Geometry *geometry, const Ray_one *one, uint leaf_number,
+/* The triangles of a leaf that the ray may meet before `bound`. An empty lane has its vertices at NaN, so no
+ * comparison holds. */
+FORCE_INLINE static child_mask triangle_candidates(const Geometry *geometry, const LeafShear *one, uint leaf_number,
                                                    real bound) {
     __global const real *leaf = place_in(geometry->triangles, (leaf_number - geometry->first_triangles) * (9 * TREE_WIDTH));
-    const Shear_one shear = shear_of_one(one);
-    const Shear all = shear_for_all(&shear);
+    Shear shear;
+    shear.origin = vec3(splat(one->origin[0]), splat(one->origin[1]), splat(one->origin[2]));
+    shear.slope = vec3(splat(one->slope[0]), splat(one->slope[1]), splat(one->slope[2]));
+    shear.margin = splat(one->margin);
     Triangle turned;
-    turned.a = vertex_of_leaf(leaf, &shear, 0);
-    turned.b = vertex_of_leaf(leaf, &shear, 3);
-    turned.c = vertex_of_leaf(leaf, &shear, 6);
-    return lane_bits(triangle_is_candidate(&all, splat(bound), &turned));
+    turned.a = vertex_of_leaf(leaf, one, 0);
+    turned.b = vertex_of_leaf(leaf, one, 3 * TREE_WIDTH);
+    turned.c = vertex_of_leaf(leaf, one, 6 * TREE_WIDTH);
+    child_mask mask = lane_bits(triangle_is_candidate(&shear, splat(bound), &turned));
+#ifdef __FAST_RELAXED_MATH__
+    /* Here a compiler may take a NaN for a number. */
+    const vuint shapes = *(__global const vuint *)place_in(geometry->slot_sphere, leaf_number * TREE_WIDTH);
+    mask &= lane_bits(vbool_of_uint(shapes != splat_uint(NO_SPHERE)));
+#endif
+    return mask;
 }
 #endif
 

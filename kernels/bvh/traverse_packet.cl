@@ -33,6 +33,8 @@ FORCE_INLINE static uint add_visits(Visit *visits, uint count, uint lane, uint f
 }
 
 #define FOUND_MAX 64u
+#define VISITS_MAX 64u
+#define VISITS_MOST (VISITS_MAX + LANE_COUNT * TREE_WIDTH + 2)
 
 /* The rays of all lanes, and what each has met. */
 typedef struct LaneRays {
@@ -45,6 +47,11 @@ typedef struct LaneRays {
     LaneRefineds t;
     LaneUints slot, enters;
     LaneReals bound;
+#if EFFECT_TRIANGLES
+    /* What triangles need of them: Shear, and the row that a turned x is in. */
+    LaneReals turned_origin[3], turned_low[3], turned_direction[3], slope[3], doubt;
+    LaneUints row;
+#endif
 } LaneRays;
 
 static Ray_one ray_of_lane(const LaneRays *rays, uint lane) {
@@ -62,41 +69,165 @@ static Ray_one ray_of_lane(const LaneRays *rays, uint lane) {
     return ray;
 }
 
+#if SPHERES_MET
 static void intersect_slot_of_lane(const Geometry *geometry, LaneRays *rays, uint lane, uint slot) {
     const Ray_one ray = ray_of_lane(rays, lane);
-#if SPHERES_MET && !EFFECT_TRIANGLES
     const Sphere_one sphere = sphere_for_ray_one(geometry, &ray, slot);
-#endif
     Hit_one hit;
     hit.t = rays->t.of[lane];
     hit.slot = rays->slot.of[lane];
     hit.enters = (int)rays->enters.of[lane];
     hit.bound = rays->bound.of[lane];
-#if EFFECT_TRIANGLES
-    if (slot >= geometry->first_triangles * TREE_WIDTH) {
-        const Triangle_one triangle = load_triangle_one(geometry, slot);
-        intersect_triangle_one(geometry, &ray, 1, &triangle, slot, &hit);
-    }
-#if SPHERES_MET
-    else {
-        const Sphere_one sphere = sphere_for_ray_one(geometry, &ray, slot);
-        intersect_sphere_one(geometry, &ray, 1, &sphere, slot, &hit);
-    }
-#endif
-#else
     intersect_sphere_one(geometry, &ray, 1, &sphere, slot, &hit);
-#endif
     rays->t.of[lane] = hit.t;
     rays->slot.of[lane] = hit.slot;
     rays->enters.of[lane] = (uint)hit.enters;
     rays->bound.of[lane] = hit.bound;
 }
+#endif
 
 #define LEAF_BATCH 32u
 
+#if EFFECT_TRIANGLES
+/* The triangle in each lane's slot, turned as its ray is. `row`: of the turned x. */
+static Triangle load_turned(const Geometry *geometry, vuint slot, vuint row) {
+    const vuint lane = slot % TREE_WIDTH;
+    const vuint place = (slot - lane - geometry->first_triangles * TREE_WIDTH) * 9u + lane;
+    const vuint x = place + row;
+    const vbool last = vbool_of_uint(row == splat_uint(2 * TREE_WIDTH)), first = vbool_of_uint(row == splat_uint(0));
+    const vuint y = place + choose_uint(last, splat_uint(0), row + splat_uint(TREE_WIDTH));
+    const vuint z = place + choose_uint(first, splat_uint(2 * TREE_WIDTH), row - splat_uint(TREE_WIDTH));
+    const uint to_b = 3 * TREE_WIDTH, to_c = 6 * TREE_WIDTH;
+    Triangle turned;
+    turned.a = vec3(gather_split_real(geometry->triangles, 0, x), gather_split_real(geometry->triangles, 0, y),
+                    gather_split_real(geometry->triangles, 0, z));
+    turned.b = vec3(gather_split_real(geometry->triangles, to_b, x), gather_split_real(geometry->triangles, to_b, y),
+                    gather_split_real(geometry->triangles, to_b, z));
+    turned.c = vec3(gather_split_real(geometry->triangles, to_c, x), gather_split_real(geometry->triangles, to_c, y),
+                    gather_split_real(geometry->triangles, to_c, z));
+    return turned;
+}
+
+/* Three numbers of each of these lanes. */
+static Vec3 gather_lanes(const LaneReals *numbers, vuint lanes) {
+    return vec3(gather_real(numbers[0].of, lanes), gather_real(numbers[1].of, lanes), gather_real(numbers[2].of, lanes));
+}
+
+static Hit_one hit_of_lane(const LaneRays *rays, uint lane) {
+    Hit_one hit;
+    hit.t = rays->t.of[lane];
+    hit.slot = rays->slot.of[lane];
+    hit.enters = (int)rays->enters.of[lane];
+    hit.bound = rays->bound.of[lane];
+    return hit;
+}
+
+static void set_hit_of_lane(const Hit_one *hit, uint lane, LaneRays *rays) {
+    rays->t.of[lane] = hit->t;
+    rays->slot.of[lane] = hit->slot;
+    rays->enters.of[lane] = (uint)hit->enters;
+    rays->bound.of[lane] = hit->bound;
+}
+
+#if ROBUST_SHAPES
+/* Decides about those that triangle_decide leaves open, few of a million. */
+static void intersect_doubtful(const Geometry *geometry, const Visit *visits, uint count, LaneRays *rays) {
+    for (uint i = 0; i < count; ++i) {
+        const uint lane = visits[i].lane, slot = visits[i].what;
+        const Ray_one ray = ray_of_lane(rays, lane);
+        const Shear_one shear = shear_of_one(&ray);
+        const Triangle_one triangle = load_triangle_one(geometry, slot);
+        Hit_one hit = hit_of_lane(rays, lane);
+        intersect_left_triangle_one(geometry, &ray, &shear, 1, &triangle, slot, &hit);
+        set_hit_of_lane(&hit, lane, rays);
+    }
+}
+#endif
+
+/* Decides about triangles that may be met, as many as there are lanes at a time. */
+static void intersect_found_triangles(const Geometry *geometry, Visit *found, uint count, LaneRays *rays) {
+    uint open = 0; /* of `found`, which those take over that have been asked */
+    for (uint begin = 0; begin < count; begin += LANE_COUNT) {
+        LaneUints lanes, slots, decided, enter, doubtful;
+        LaneRefineds distances;
+        for (uint i = 0; i < LANE_COUNT; ++i) {
+            const Visit visit = found[min(begin + i, count - 1)]; /* the last one again and again */
+            lanes.of[i] = visit.lane;
+            slots.of[i] = visit.what;
+        }
+        Shear shear;
+        shear.direction = gather_lanes(rays->turned_direction, lanes.all);
+        shear.origin = gather_lanes(rays->turned_origin, lanes.all);
+        shear.low = gather_lanes(rays->turned_low, lanes.all);
+        shear.error = gather_real(rays->origin_error.of, lanes.all);
+        shear.doubt = gather_real(rays->doubt.of, lanes.all);
+        const Triangle turned = load_turned(geometry, slots.all, gather_uint(rays->row.of, lanes.all));
+        vrefined t;
+        vbool enters, unsure;
+        const vbool met = triangle_decide(&shear, &turned, &t, &enters, &unsure);
+        distances.all = t;
+        decided.all = choose_uint(met & vbool_not(unsure), splat_uint(1), splat_uint(0));
+        enter.all = choose_uint(enters, splat_uint(1), splat_uint(0));
+        doubtful.all = choose_uint(unsure, splat_uint(1), splat_uint(0));
+        for (uint i = 0; i < LANE_COUNT && begin + i < count; ++i) {
+            const uint lane = lanes.of[i], slot = slots.of[i];
+            Hit_one hit = hit_of_lane(rays, lane);
+            keep_closer_one(geometry, (int)decided.of[i], distances.of[i], slot, (int)enter.of[i], &hit);
+            set_hit_of_lane(&hit, lane, rays);
+            open = add_visit(found, open, lane, slot, doubtful.of[i] != 0);
+        }
+    }
+#if ROBUST_SHAPES
+    if (open > 0) intersect_doubtful(geometry, found, open, rays);
+#endif
+}
+
+static LeafShear shear_of_lane(const LaneRays *rays, uint lane) {
+    LeafShear shear;
+    shear.origin[0] = rays->turned_origin[0].of[lane];
+    shear.origin[1] = rays->turned_origin[1].of[lane];
+    shear.origin[2] = rays->turned_origin[2].of[lane];
+    shear.slope[0] = rays->slope[0].of[lane];
+    shear.slope[1] = rays->slope[1].of[lane];
+    shear.slope[2] = rays->slope[2].of[lane];
+    shear.margin = rays->cull_margin.of[lane];
+    set_rows(&shear, rays->row.of[lane]);
+    return shear;
+}
+
+/* intersect_leaves, below, for those leaves that hold triangles. */
+static void intersect_triangle_leaves(const Geometry *geometry, const Visit *visits, uint count, LaneRays *rays) {
+    Visit found[FOUND_MAX + TREE_WIDTH];
+    child_mask met[LEAF_BATCH];
+    uint found_count = 0;
+    for (uint begin = 0; begin < count; begin += LEAF_BATCH) {
+        const uint end = min(begin + LEAF_BATCH, count);
+        for (uint i = begin; i < end; ++i) {
+            const LeafShear shear = shear_of_lane(rays, visits[i].lane);
+            met[i - begin] = triangle_candidates(geometry, &shear, visits[i].what, rays->bound.of[visits[i].lane]);
+        }
+        for (uint i = begin; i < end; ++i) {
+            const uint lane = visits[i].lane, leaf = visits[i].what;
+            const child_mask left = without_known(met[i - begin], leaf, rays->own_slot.of[lane], rays->slot.of[lane]);
+            found_count = add_visits(found, found_count, lane, leaf * TREE_WIDTH, left, 1);
+            if (found_count < FOUND_MAX && i + 1 < count) continue;
+            intersect_found_triangles(geometry, found, found_count, rays);
+            found_count = 0;
+        }
+    }
+}
+#endif
+
+#if EFFECT_TRIANGLES
+#define SPHERE_LEAVES intersect_sphere_leaves
+#else
+#define SPHERE_LEAVES intersect_leaves
+#endif
+
+#if SPHERES_MET
 /* Visits leaves and decides about the spheres that may be met there. Of a batch, all leaves are tested before anything
  * depends on it: a branch that is guessed wrong then throws away no test. */
-static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint count, LaneRays *rays) {
+static void SPHERE_LEAVES(const Geometry *geometry, const Visit *visits, uint count, LaneRays *rays) {
     Visit found[FOUND_MAX + TREE_WIDTH];
     child_mask met[LEAF_BATCH];
     uint found_count = 0;
@@ -104,15 +235,7 @@ static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint
         const uint end = min(begin + LEAF_BATCH, count);
         for (uint i = begin; i < end; ++i) {
             const Ray_one ray = ray_of_lane(rays, visits[i].lane);
-#if EFFECT_TRIANGLES
-            if (visits[i].what >= geometry->first_triangles) {
-                met[i - begin] = triangle_candidates(geometry, &ray, visits[i].what, rays->bound.of[visits[i].lane]);
-                continue;
-            }
-#endif
-#if SPHERES_MET
             met[i - begin] = leaf_candidates(geometry, &ray, visits[i].what, rays->bound.of[visits[i].lane]);
-#endif
         }
         for (uint i = begin; i < end; ++i) {
             const uint lane = visits[i].lane, leaf = visits[i].what;
@@ -124,6 +247,24 @@ static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint
         }
     }
 }
+#endif
+
+#if SPHERES_MET && EFFECT_TRIANGLES
+/* A leaf holds one kind: those of each are visited together. */
+static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint count, LaneRays *rays) {
+    Visit spheres[VISITS_MOST], triangles[VISITS_MOST];
+    uint sphere_count = 0, triangle_count = 0;
+    for (uint i = 0; i < count; ++i) {
+        const int flat = visits[i].what >= geometry->first_triangles;
+        sphere_count = add_visit(spheres, sphere_count, visits[i].lane, visits[i].what, !flat);
+        triangle_count = add_visit(triangles, triangle_count, visits[i].lane, visits[i].what, flat);
+    }
+    intersect_sphere_leaves(geometry, spheres, sphere_count, rays);
+    intersect_triangle_leaves(geometry, triangles, triangle_count, rays);
+}
+#elif EFFECT_TRIANGLES
+#define intersect_leaves intersect_triangle_leaves
+#endif
 
 /* What box tests need of the rays of all lanes. */
 typedef struct LaneBoxRays {
@@ -216,8 +357,6 @@ static uint visit_lone_group(const FlatTree *flat, const PacketBoxRay *box, Visi
     }
     return count;
 }
-
-#define VISITS_MAX 64u
 
 /* The boxes of one group against the ray of each of `lanes`, first all tests and then the visits. Returns the number of
  * visits, of which there have been `count`. */
@@ -345,8 +484,28 @@ static void traverse_nodes(const Geometry *geometry, const BoxAxis *axes, vbool 
     }
 }
 
+#if EFFECT_TRIANGLES
+static void store_shear(const Shear *shear, LaneRays *rays) {
+    rays->turned_origin[0].all = shear->origin.x;
+    rays->turned_origin[1].all = shear->origin.y;
+    rays->turned_origin[2].all = shear->origin.z;
+    rays->turned_low[0].all = shear->low.x;
+    rays->turned_low[1].all = shear->low.y;
+    rays->turned_low[2].all = shear->low.z;
+    rays->turned_direction[0].all = shear->direction.x;
+    rays->turned_direction[1].all = shear->direction.y;
+    rays->turned_direction[2].all = shear->direction.z;
+    rays->slope[0].all = shear->slope.x;
+    rays->slope[1].all = shear->slope.y;
+    rays->slope[2].all = shear->slope.z;
+    rays->doubt.all = shear->doubt;
+    rays->row.all = choose_uint(shear->along_x, splat_uint(TREE_WIDTH),
+                                choose_uint(shear->along_y, splat_uint(2 * TREE_WIDTH), splat_uint(0)));
+}
+#endif
+
 /* The spheres below the first leaves, against what the rays have hit so far. */
-static void traverse_packet(const Geometry *geometry, const Ray *ray, vbool active, Hit *hit) {
+static void traverse_packet(const Geometry *geometry, const Ray *ray, WITH_SHEAR(const Shear *shear) vbool active, Hit *hit) {
     if (geometry->leaf_count == geometry->first_leaves) return;
     LaneRays rays;
     rays.high[0].all = ray->origin.high.x;
@@ -368,6 +527,9 @@ static void traverse_packet(const Geometry *geometry, const Ray *ray, vbool acti
     rays.slot.all = hit->slot;
     rays.enters.all = choose_uint(hit->enters, splat_uint(1), splat_uint(0));
     rays.bound.all = hit->bound;
+#if EFFECT_TRIANGLES
+    store_shear(shear, &rays);
+#endif
     BoxAxis axes[3];
     axes[0] = box_axis(ray->origin.high.x, ray->direction.x);
     axes[1] = box_axis(ray->origin.high.y, ray->direction.y);
@@ -389,35 +551,35 @@ static Vec3 vertex_for_all(__global const real *leaf) {
 }
 
 /* One leaf's triangles, one at a time, against all lanes. */
-static void intersect_triangle_leaf(const Geometry *geometry, const Ray *ray, vbool active, uint leaf_number, Hit *hit) {
+static void intersect_triangle_leaf(const Geometry *geometry, const Ray *ray, const Shear *shear, vbool active, uint leaf_number,
+                                    Hit *hit) {
     __global const real *leaf = place_in(geometry->triangles, (leaf_number - geometry->first_triangles) * (9 * TREE_WIDTH));
-    const Shear shear = shear_of(ray);
     for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
+        if (*place_in(geometry->slot_sphere, leaf_number * TREE_WIDTH + lane) == NO_SPHERE) break; /* the rest is empty */
         const vuint slot = splat_uint(leaf_number * TREE_WIDTH + lane);
-        Triangle triangle, turned;
+        Triangle triangle;
         triangle.a = vertex_for_all(leaf + lane);
         triangle.b = vertex_for_all(leaf + 3 * TREE_WIDTH + lane);
         triangle.c = vertex_for_all(leaf + 6 * TREE_WIDTH + lane);
-        turned.a = turn3(&shear, triangle.a);
-        turned.b = turn3(&shear, triangle.b);
-        turned.c = turn3(&shear, triangle.c);
-        vbool candidate = active & triangle_is_candidate(&shear, hit->bound, &turned);
+        const Triangle turned = turn_triangle(shear, &triangle);
+        vbool candidate = active & triangle_is_candidate(shear, hit->bound, &turned);
 #if SAMPLES_LAMPS
         candidate = candidate & vbool_of_uint(hit->slot != slot);
 #endif
 #if !OWN_SHAPE_IS_MET
         candidate = candidate & vbool_of_uint(ray->own_slot != slot);
 #endif
-        if (any_lane(candidate)) intersect_triangle(geometry, ray, candidate, &triangle, slot, hit);
+        if (any_lane(candidate)) intersect_triangle(geometry, ray, shear, candidate, &triangle, slot, hit);
     }
 }
 #endif
 
 /* One leaf's spheres, one at a time, against all lanes. */
-static void intersect_leaf(const Geometry *geometry, const Ray *ray, vbool active, uint leaf_number, Hit *hit) {
+static void intersect_leaf(const Geometry *geometry, const Ray *ray, WITH_SHEAR(const Shear *shear) vbool active,
+                           uint leaf_number, Hit *hit) {
 #if EFFECT_TRIANGLES
     if (leaf_number >= geometry->first_triangles) {
-        intersect_triangle_leaf(geometry, ray, active, leaf_number, hit);
+        intersect_triangle_leaf(geometry, ray, shear, active, leaf_number, hit);
         return;
     }
 #endif
@@ -455,9 +617,14 @@ FORCE_INLINE static Hit intersect_closer(const Geometry *geometry, const Ray *ra
 #if SPHERES_MET
     intersect_own_sphere(geometry, ray, active, &hit);
 #endif
-    for (uint leaf = 0; leaf < geometry->first_leaves; ++leaf) intersect_leaf(geometry, ray, active, leaf, &hit);
+#if EFFECT_TRIANGLES
+    const Shear at_triangles = shear_at_triangles(geometry, ray);
+    const Shear *const shear = &at_triangles;
+#endif
+    for (uint leaf = 0; leaf < geometry->first_leaves; ++leaf)
+        intersect_leaf(geometry, ray, WITH_SHEAR(shear) active, leaf, &hit);
 #if ACCELERATION_TREE
-    traverse_packet(geometry, ray, active, &hit);
+    traverse_packet(geometry, ray, WITH_SHEAR(shear) active, &hit);
 #endif
     return hit;
 }

@@ -2,15 +2,17 @@
  *
  * In:    a ray, the geometry.   Out: the hit of least (distance, sphere index); or whether there is any.
  * Knows: node.cl, hit.cl.   Does not know: materials, what made the ray. */
-FORCE_INLINE static void intersect_leaf(const Geometry *geometry, const Ray *ray, uint leaf_number, Hit *best) {
+FORCE_INLINE static void intersect_leaf(const Geometry *geometry, const Ray *ray, WITH_SHEAR(const Shear *shear) uint leaf_number,
+                                        Hit *best) {
 #if EFFECT_TRIANGLES
     if (leaf_number >= geometry->first_triangles) {
-        const child_mask near = triangle_candidates(geometry, ray, leaf_number, best->bound);
+        const LeafShear all = leaf_shear(shear);
+        const child_mask near = triangle_candidates(geometry, &all, leaf_number, best->bound);
         for (child_mask left = without_known(near, leaf_number, ray->own_slot, best->slot); left != 0;
              left = without_lowest_bit(left)) {
             const uint slot = leaf_number * TREE_WIDTH + lowest_bit(left);
             const Triangle triangle = load_triangle(geometry, slot);
-            intersect_triangle(geometry, ray, vbool_all, &triangle, slot, best);
+            intersect_triangle(geometry, ray, shear, vbool_all, &triangle, slot, best);
         }
         return;
     }
@@ -29,11 +31,12 @@ FORCE_INLINE static void intersect_leaf(const Geometry *geometry, const Ray *ray
 #if ACCELERATION_TREE
 /* The leaves among the children that have been met, at once and in any order: sorting them costs more than it saves. True: a
  * hit has been found, and any will do. */
-FORCE_INLINE static int intersect_leaves(const Geometry *geometry, const Ray *ray, uint node, child_mask leaves, int any,
+FORCE_INLINE static int intersect_leaves(const Geometry *geometry, const Ray *ray, WITH_SHEAR(const Shear *shear) uint node,
+                                         child_mask leaves, int any,
                                          Hit *best) {
     for (; leaves != 0; leaves = without_lowest_bit(leaves)) {
         const uint child = *place_in(geometry->children, node * TREE_WIDTH + lowest_bit(leaves));
-        intersect_leaf(geometry, ray, child & ~CHILD_LEAF, best);
+        intersect_leaf(geometry, ray, WITH_SHEAR(shear) child & ~CHILD_LEAF, best);
         if (any && best->slot != NO_SLOT) return 1;
     }
     return 0;
@@ -43,7 +46,7 @@ FORCE_INLINE static int intersect_leaves(const Geometry *geometry, const Ray *ra
 /* Processors: each child that is still to be visited is on a stack, with the distance at which it is entered. */
 #define STACK_SIZE (TREE_DEPTH_MAX * (TREE_WIDTH - 1) + 1)
 
-FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray, int any, Hit *best) {
+FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray, WITH_SHEAR(const Shear *shear) int any, Hit *best) {
     const BoxRay box = box_ray(ray);
     uint stack_child[STACK_SIZE];
     real stack_entry[STACK_SIZE];
@@ -53,7 +56,7 @@ FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray,
     for (;;) {
         child_mask met = test_node(geometry, &box, node, best->bound, &entries.all);
         const child_mask leaves = leaf_children(geometry, node);
-        if (intersect_leaves(geometry, ray, node, met & leaves, any, best)) return;
+        if (intersect_leaves(geometry, ray, WITH_SHEAR(shear) node, met & leaves, any, best)) return;
         /* Nodes onto the stack, the nearest on top. */
         met &= ~leaves;
         const uint base = top;
@@ -84,7 +87,7 @@ FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray,
  * than 2^28 nodes, since there are fewer spheres than that. */
 #define CHILDREN_ALL (((child_mask)1 << TREE_WIDTH) - 1u)
 
-FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray, int any, Hit *best) {
+FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray, WITH_SHEAR(const Shear *shear) int any, Hit *best) {
     const BoxRay box = box_ray(ray);
     uint levels[TREE_DEPTH_MAX];
     uint top = 0;
@@ -94,7 +97,7 @@ FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray,
         vreal_node entry;
         child_mask met = wanted & test_node(geometry, &box, node, best->bound, &entry);
         const child_mask leaves = leaf_children(geometry, node);
-        if (intersect_leaves(geometry, ray, node, met & leaves, any, best)) return;
+        if (intersect_leaves(geometry, ray, WITH_SHEAR(shear) node, met & leaves, any, best)) return;
         met &= ~leaves;
         if (met != 0) {
             real nearest;
@@ -118,9 +121,13 @@ FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray,
 
 /* Everything but the sphere being left. `best` brings a bound and perhaps a hit along. */
 static void traverse_single(const Geometry *geometry, const Ray *ray, int any, Hit *best) {
-    for (uint leaf = 0; leaf < geometry->first_leaves; ++leaf) intersect_leaf(geometry, ray, leaf, best);
+#if EFFECT_TRIANGLES
+    const Shear at_triangles = shear_at_triangles(geometry, ray);
+    const Shear *const shear = &at_triangles;
+#endif
+    for (uint leaf = 0; leaf < geometry->first_leaves; ++leaf) intersect_leaf(geometry, ray, WITH_SHEAR(shear) leaf, best);
 #if ACCELERATION_TREE
-    traverse_tree(geometry, ray, any, best);
+    traverse_tree(geometry, ray, WITH_SHEAR(shear) any, best);
 #endif
 }
 

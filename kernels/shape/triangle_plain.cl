@@ -14,31 +14,42 @@
 #define Triangle LANED(Triangle)
 #define Shear LANED(Shear)
 #define turn3 LANED(turn3)
+#define turn_triangle LANED(turn_triangle)
 #define shear_of LANED(shear_of)
+#define doubt_of LANED(doubt_of)
 #define cross3 LANED(cross3)
 #define triangle_meets LANED(triangle_meets)
 #define triangle_is_candidate LANED(triangle_is_candidate)
-#define triangle_intersect LANED(triangle_intersect)
+#define triangle_decide LANED(triangle_decide)
 #define triangle_surface LANED(triangle_surface)
 
 typedef struct Triangle {
     Vec3 a, b, c;
 } Triangle;
 
+/* The members of triangle_robust.cl, of which two mean something. */
 typedef struct Shear {
     vbool along_x, along_y;
-    Vec3 direction, origin;
+    Vec3 direction, origin, low;
+    Vec3 slope; /* the direction */
+    vreal margin, error, doubt;
 } Shear;
 
 static Vec3 turn3(const Shear *shear, Vec3 v) { return v; }
+static Triangle turn_triangle(const Shear *shear, const Triangle *triangle) { return *triangle; }
 
 static Shear shear_of(const Ray *ray) {
     Shear shear;
     shear.along_x = shear.along_y = vbool_none;
-    shear.direction = ray->direction;
+    shear.direction = shear.slope = ray->direction;
     shear.origin = ray->origin.high;
+    shear.low = zero3();
+    shear.margin = shear.error = splat(0);
+    shear.doubt = splat(-1);
     return shear;
 }
+
+static vreal doubt_of(const Ray *ray, const Triangle *left) { return splat(-1); }
 
 static Vec3 cross3(Vec3 a, Vec3 b) {
     return vec3(fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x)));
@@ -59,14 +70,15 @@ FORCE_INLINE static vbool triangle_meets(Vec3 origin, Vec3 direction, const Tria
 FORCE_INLINE static vbool triangle_is_candidate(const Shear *shear, vreal bound, const Triangle *turned) {
     vreal t;
     vbool enters;
-    return triangle_meets(shear->origin, shear->direction, turned, &t, &enters) & (t <= bound);
+    return triangle_meets(shear->origin, shear->slope, turned, &t, &enters) & (t <= bound);
 }
 
-FORCE_INLINE static vbool triangle_intersect(const Ray *ray, const Triangle *triangle, const Triangle *left, vbool leaves,
-                                             vrefined *t, vbool *enters) {
+FORCE_INLINE static vbool triangle_decide(const Shear *shear, const Triangle *triangle, vrefined *t, vbool *enters,
+                                          vbool *doubtful) {
     vreal distance;
-    const vbool met = triangle_meets(ray->origin.high, ray->direction, triangle, &distance, enters);
+    const vbool met = triangle_meets(shear->origin, shear->direction, triangle, &distance, enters);
     *t = to_refined(distance);
+    *doubtful = vbool_none;
     return met;
 }
 

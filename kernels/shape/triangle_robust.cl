@@ -2,9 +2,11 @@
  *
  * In:    a ray whose origin is the unevaluated sum high + low, a triangle as it is stored.
  * Out:   shear_of               the ray's shear, which the tests below work in
+ *        doubt_of               what is known of the triangle that it leaves before it meets another
  *        triangle_is_candidate  may the ray meet the triangle before `bound`? Quick; what it rules out is surely not met.
- *        triangle_intersect     does the ray meet it, at which distance, and from outside (the side from which its
- *                               vertices run counter-clockwise) or inside?
+ *        triangle_decide        does the ray meet it, at which distance, and from outside (the side from which its
+ *                               vertices run counter-clockwise) or inside? Or is that for the next to decide?
+ *        triangle_intersect     the same, for every triangle
  *        triangle_surface       the point that was met, as an origin for the next ray, and the outward unit normal
  * Knows: ray.cl, wide.cl.   Does not know: trees, materials. Read once for each number of lanes.
  *
@@ -30,11 +32,17 @@
 #define Shear LANED(Shear)
 #define Edges LANED(Edges)
 #define turn3 LANED(turn3)
+#define turn_triangle LANED(turn_triangle)
 #define shear_of LANED(shear_of)
+#define doubt_of LANED(doubt_of)
 #define edges_of LANED(edges_of)
 #define edges_hold LANED(edges_hold)
+#define edges_moment LANED(edges_moment)
 #define edges_distance LANED(edges_distance)
+#define from_outside LANED(from_outside)
+#define area_bound LANED(area_bound)
 #define triangle_is_candidate LANED(triangle_is_candidate)
+#define triangle_decide LANED(triangle_decide)
 #define triangle_intersect LANED(triangle_intersect)
 #define triangle_surface LANED(triangle_surface)
 #define same_place LANED(same_place)
@@ -52,10 +60,10 @@ typedef struct Triangle {
 typedef struct Shear {
     vbool along_x, along_y; /* else along z */
     Vec3 direction;         /* turned, so that it is longest along z */
-    Vec3 origin;            /* turned, its high part */
-    vreal x, y;             /* what is added to x and y for each step along -z */
-    vreal inverse;          /* 1 / direction.z */
-    vreal margin;           /* of the ray */
+    Vec3 origin, low;       /* turned */
+    Vec3 slope;             /* what is added to x and y for each step along -z, and 1 / direction.z */
+    vreal margin, error;    /* of the ray and of its origin */
+    vreal doubt;            /* doubt_of, below 0 where no triangle is left */
 } Shear;
 
 /* Turns a vector so that the axis that the ray runs along is z: by one or two places, which keeps its handedness. */
@@ -65,6 +73,15 @@ static Vec3 turn3(const Shear *shear, Vec3 v) {
                 choose(x, v.x, choose(y, v.y, v.z)));
 }
 
+static Triangle turn_triangle(const Shear *shear, const Triangle *triangle) {
+    Triangle turned;
+    turned.a = turn3(shear, triangle->a);
+    turned.b = turn3(shear, triangle->b);
+    turned.c = turn3(shear, triangle->c);
+    return turned;
+}
+
+/* Of a ray that leaves no triangle. */
 static Shear shear_of(const Ray *ray) {
     const Vec3 d = ray->direction;
     const vreal x = fabs(d.x), y = fabs(d.y), z = fabs(d.z);
@@ -73,10 +90,13 @@ static Shear shear_of(const Ray *ray) {
     shear.along_y = vbool_not(x > y) & (y > z);
     shear.direction = turn3(&shear, d);
     shear.origin = turn3(&shear, ray->origin.high);
-    shear.inverse = divide(splat(1), shear.direction.z);
-    shear.x = shear.direction.x * shear.inverse;
-    shear.y = shear.direction.y * shear.inverse;
+    shear.low = turn3(&shear, ray->origin.low);
+    shear.slope.z = divide(splat(1), shear.direction.z);
+    shear.slope.x = shear.direction.x * shear.slope.z;
+    shear.slope.y = shear.direction.y * shear.slope.z;
     shear.margin = ray->cull_margin;
+    shear.error = ray->origin.error;
+    shear.doubt = splat(-1);
     return shear;
 }
 
@@ -86,15 +106,15 @@ static Shear shear_of(const Ray *ray) {
 FORCE_INLINE static vbool triangle_is_candidate(const Shear *shear, vreal bound, const Triangle *turned) {
     const Vec3 a = subtract3(turned->a, shear->origin), b = subtract3(turned->b, shear->origin),
                c = subtract3(turned->c, shear->origin);
-    const vreal ax = loose_fma(-shear->x, a.z, a.x), ay = loose_fma(-shear->y, a.z, a.y);
-    const vreal bx = loose_fma(-shear->x, b.z, b.x), by = loose_fma(-shear->y, b.z, b.y);
-    const vreal cx = loose_fma(-shear->x, c.z, c.x), cy = loose_fma(-shear->y, c.z, c.y);
+    const vreal ax = loose_fma(-shear->slope.x, a.z, a.x), ay = loose_fma(-shear->slope.y, a.z, a.y);
+    const vreal bx = loose_fma(-shear->slope.x, b.z, b.x), by = loose_fma(-shear->slope.y, b.z, b.y);
+    const vreal cx = loose_fma(-shear->slope.x, c.z, c.x), cy = loose_fma(-shear->slope.y, c.z, c.y);
     const vreal across = larger(larger(larger(fabs(ax), fabs(ay)), larger(fabs(bx), fabs(by))), larger(fabs(cx), fabs(cy)));
     const vreal along = larger(larger(fabs(a.z), fabs(b.z)), fabs(c.z));
     const vreal delta = loose_fma(splat(R(8.0) * ROUNDOFF), across + along, R(2.0) * shear->margin);
     const vreal margin = R(6.0) * delta * (across + delta);
     const vreal u = loose_fma(bx, cy, -(by * cx)), v = loose_fma(cx, ay, -(cy * ax)), w = loose_fma(ax, by, -(ay * bx));
-    const vreal ta = a.z * shear->inverse, tb = b.z * shear->inverse, tc = c.z * shear->inverse;
+    const vreal ta = a.z * shear->slope.z, tb = b.z * shear->slope.z, tc = c.z * shear->slope.z;
     const vbool right = smaller(smaller(u, v), w) >= -margin, left = larger(larger(u, v), w) <= margin;
     const vbool ahead = larger(larger(ta, tb), tc) >= R(-2.0) * delta;
     const vbool near = smaller(smaller(ta, tb), tc) <= bound + R(2.0) * delta;
@@ -110,9 +130,8 @@ typedef struct Edges {
     Wide slope; /* direction.z */
 } Edges;
 
-FORCE_INLINE static Edges edges_of(const Ray *ray, const Shear *shear, const Triangle *triangle) {
-    const Vec3 high = shear->origin, low = turn3(shear, ray->origin.low);
-    const Vec3 a = turn3(shear, triangle->a), b = turn3(shear, triangle->b), c = turn3(shear, triangle->c);
+FORCE_INLINE static Edges edges_of(const Shear *shear, const Triangle *turned) {
+    const Vec3 high = shear->origin, low = shear->low, a = turned->a, b = turned->b, c = turned->c;
     Edges edges;
     edges.slope = wide(shear->direction.z);
     const Wide x = wide_divide(wide(-shear->direction.x), edges.slope), y = wide_divide(wide(-shear->direction.y), edges.slope);
@@ -139,10 +158,41 @@ FORCE_INLINE static vbool edges_hold(const Edges *edges, Wide *sum) {
     return vbool_not(below & above) & (wide_below_0(*sum) | wide_above_0(*sum));
 }
 
-/* To the triangle's plane. */
-FORCE_INLINE static Wide edges_distance(const Edges *edges, Wide sum) {
-    const Wide moment = wide_madd(edges->a, edges->az, wide_madd(edges->b, edges->bz, wide_multiply(edges->c, edges->cz)));
+/* To the triangle's plane: along z, times the sum. */
+FORCE_INLINE static Wide edges_moment(const Edges *edges) {
+    return wide_madd(edges->a, edges->az, wide_madd(edges->b, edges->bz, wide_multiply(edges->c, edges->cz)));
+}
+
+FORCE_INLINE static Wide edges_distance(const Edges *edges, Wide moment, Wide sum) {
     return wide_divide(wide_divide(moment, sum), edges->slope);
+}
+
+/* Whether the ray meets a triangle, whose sum of edge functions this is, from outside. */
+static vbool from_outside(const Shear *shear, Wide sum) {
+    const vreal z = shear->direction.z;
+    return (wide_below_0(sum) & (z > splat(0))) | (wide_above_0(sum) & (z < splat(0)));
+}
+
+/* At least the 1-norm of the cross product of two edges, 2 * (1 + 8u) of it at most where they are at right angles. */
+static vreal area_bound(const Triangle *triangle) {
+    const Vec3 b = subtract3(triangle->b, triangle->a), c = subtract3(triangle->c, triangle->a);
+    return R(2.0) * (fabs(b.x) + fabs(b.y) + fabs(b.z)) * (fabs(c.x) + fabs(c.y) + fabs(c.z));
+}
+
+/* Of a triangle that is turned. `doubtful`: the ray leaves a triangle, and the origin or what is met may lie in the other's
+ * plane; the rest then means nothing. The moment is the distance times d.n, so it is compared with what |n| may be. */
+FORCE_INLINE static vbool triangle_decide(const Shear *shear, const Triangle *turned, vrefined *t, vbool *enters,
+                                          vbool *doubtful) {
+    const Edges edges = edges_of(shear, turned);
+    Wide sum;
+    const vbool held = edges_hold(&edges, &sum);
+    const Wide moment = edges_moment(&edges), distance = edges_distance(&edges, moment, sum);
+    const vbool at_once = vbool_not(fabs(wide_near(moment)) > shear->error * area_bound(turned));
+    const vbool beside = vbool_not(fabs(wide_near(distance)) > shear->doubt);
+    *doubtful = (shear->doubt >= splat(0)) & (at_once | beside);
+    *t = wide_refined(distance);
+    *enters = from_outside(shear, sum);
+    return held & wide_above_0(distance);
 }
 
 /* ---- what is left ---- */
@@ -186,14 +236,25 @@ static void know_edge(Vec3 p, Vec3 q, const Triangle *left, Wide leans, vreal sl
     *edge = wide_choose(along | against, wide_multiply(leans, wide(choose(along, slope, -slope))), *edge);
 }
 
+/* Up to which distance the origin of a ray that leaves a triangle may lie in its plane: `beside` below holds for no other.
+ * d.n in `real` errs by less than 8 u of the product of the edges' 1-norms. */
+static vreal doubt_of(const Ray *ray, const Triangle *left) {
+    const Vec3 b = subtract3(left->b, left->a), c = subtract3(left->c, left->a), d = ray->direction;
+    const vreal area = area_bound(left);
+    const vreal x = fma(b.y, c.z, -(b.z * c.y)), y = fma(b.z, c.x, -(b.x * c.z)), z = fma(b.x, c.y, -(b.y * c.x));
+    const vreal leans = fabs(fma(d.x, x, fma(d.y, y, d.z * z))) - R(16.0) * ROUNDOFF * area;
+    const vbool some = leans > splat(0);
+    return choose(some, ray->origin.error * divide(area, choose(some, leans, splat(1))), splat(REAL_MAX));
+}
+
 /* `left`: the triangle that is left in the lanes of `leaves`. */
-FORCE_INLINE static vbool triangle_intersect(const Ray *ray, const Triangle *triangle, const Triangle *left, vbool leaves,
-                                             vrefined *t, vbool *enters) {
-    const Shear shear = shear_of(ray);
-    Edges edges = edges_of(ray, &shear, triangle);
+FORCE_INLINE static vbool triangle_intersect(const Ray *ray, const Shear *shear, const Triangle *triangle, const Triangle *left,
+                                             vbool leaves, vrefined *t, vbool *enters) {
+    const Triangle turned = turn_triangle(shear, triangle);
+    Edges edges = edges_of(shear, &turned);
     Wide sum;
     vbool held = edges_hold(&edges, &sum);
-    const Wide distance = edges_distance(&edges, sum);
+    const Wide distance = edges_distance(&edges, edges_moment(&edges), sum);
     vbool ahead = wide_above_0(distance);
     *t = wide_refined(distance);
     if (any_lane(leaves)) {
@@ -209,9 +270,9 @@ FORCE_INLINE static vbool triangle_intersect(const Ray *ray, const Triangle *tri
         const vbool beside = leaves & (fabs(far * wide_near(leans)) <= error * one_norm(left_normal));
         const vbool asked = at_once | beside;
         if (any_lane(asked)) {
-            know_edge(triangle->b, triangle->c, left, leans, shear.direction.z, asked, &edges.a);
-            know_edge(triangle->c, triangle->a, left, leans, shear.direction.z, asked, &edges.b);
-            know_edge(triangle->a, triangle->b, left, leans, shear.direction.z, asked, &edges.c);
+            know_edge(triangle->b, triangle->c, left, leans, shear->direction.z, asked, &edges.a);
+            know_edge(triangle->c, triangle->a, left, leans, shear->direction.z, asked, &edges.b);
+            know_edge(triangle->a, triangle->b, left, leans, shear->direction.z, asked, &edges.c);
             held = edges_hold(&edges, &sum);
             const Sides there = sides_of(left, left_normal, triangle), here = sides_of(triangle, normal, left);
             const vbool ruled = at_once | (beside & ahead);
@@ -223,14 +284,15 @@ FORCE_INLINE static vbool triangle_intersect(const Ray *ray, const Triangle *tri
             *t = choose_refined(ruled & vbool_of_refined(*t < splat_refined(0)), splat_refined(0), *t);
         }
     }
-    *enters = (wide_below_0(sum) & (shear.direction.z > splat(0))) | (wide_above_0(sum) & (shear.direction.z < splat(0)));
+    *enters = from_outside(shear, sum);
     return held & ahead;
 }
 
 /* From the triangle's vertices, not along the ray: off the plane only by rounding, whatever the ray's length. */
 FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triangle, Point *point, Vec3 *normal) {
     const Shear shear = shear_of(ray);
-    const Edges edges = edges_of(ray, &shear, triangle);
+    const Triangle turned = turn_triangle(&shear, triangle);
+    const Edges edges = edges_of(&shear, &turned);
     Wide sum;
     edges_hold(&edges, &sum);
     const vbool flat = vbool_not(wide_below_0(sum) | wide_above_0(sum)); /* not met */

@@ -45,7 +45,7 @@ MARKS = {
     "MOTION": ["path->time", "ray->time"],
     "MEDIA": ["medium_around", "exp_minus", "interface_sample"],
     "CAUSTICS": [],  # FOCUSING
-    "TRIANGLES": ["triangle_intersect", "load_triangle", "first_triangles"],
+    "TRIANGLES": ["triangle_decide", "load_triangle", "first_triangles"],
     "SHADOW_CATCHER": ["meets_catcher", "light_of_catcher", "lies_in_shadow"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
