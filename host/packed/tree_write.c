@@ -412,13 +412,16 @@ BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpT
 
 BpTreeItem bp_tree_triangle_item(const BpScene *scene, uint32_t triangle, const double origin[3]) {
     const BpTriangle *t = &scene->triangles[triangle];
-    BpTreeItem item = {.radius = FLT_MIN, .sphere = triangle};
+    BpTreeItem item = {.sphere = triangle};
+    double half[3];
     for (int a = 0; a < 3; ++a) {
         const double x = t->vertices[0][a], y = t->vertices[1][a], z = t->vertices[2][a];
         const double low = fmin(fmin(x, y), z), high = fmax(fmax(x, y), z);
         item.center[a] = (float)((low + high) / 2 - origin[a]);
-        item.radius = fmaxf(item.radius, (float)((high - low) / 2));
+        half[a] = (high - low) / 2;
     }
+    item.radius = (float)sqrt((half[0] * half[1] + half[1] * half[2] + half[2] * half[0]) / 3);
+    item.radius = fmaxf(item.radius, FLT_MIN);
     return item;
 }
 

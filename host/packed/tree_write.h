@@ -38,7 +38,7 @@ typedef struct BpTreeWriter {
  * that moves the splits see the ball around its way. */
 BpTreeItem bp_tree_item(const BpScene *scene, uint32_t sphere, const double origin[3]);
 
-/* The triangle as the splits see it, relative to `origin`: the cube around it. */
+/* The triangle as the splits see it, relative to `origin`: a cube with the area of its box. */
 BpTreeItem bp_tree_triangle_item(const BpScene *scene, uint32_t triangle, const double origin[3]);
 
 /* A box that contains the sphere of an item, the one that was rounded to it as well. */
