@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-/* Only the covers have so many spheres that they get a tree. */
+/* The covers, the final scenes, the facets and the Cornell box have so much in them that they get a tree. */
 static const struct {
     const char *scene, *effects;
 } expected[] = {
@@ -35,14 +35,21 @@ static const struct {
     {"v1-normals-antialiased", "normals"},
     {"v1-normals-ground", "normals"},
     {"checkers", "lambertian metal dielectric emission light_sampling textures"},
+    {"facets",
+     "lambertian dielectric oren_nayar rough_metal glossy light_sampling discs textures triangles; tree"},
     {"lamps", "lambertian metal dielectric emission light_sampling"},
     {"lobes",
      "lambertian metal dielectric oren_nayar rough_metal glossy rough_dielectric light_sampling discs"},
     {"next-checkered-spheres", "lambertian textures"},
     {"next-bouncing-spheres", "lambertian metal dielectric lens textures motion; tree"},
     {"next-earth", "lambertian textures images"},
-    {"next-final",
+    {"next-cornell-box", "lambertian emission triangles; tree"},
+    {"next-cornell-empty", "lambertian emission triangles"},
+    {"next-final", "lambertian metal dielectric emission textures noise images motion media triangles; tree"},
+    {"next-final-spheres",
      "lambertian metal dielectric emission light_sampling textures noise images motion media; tree"},
+    {"next-quads", "lambertian triangles"},
+    {"next-simple-light", "lambertian emission light_sampling textures noise triangles"},
     {"next-smoke", "lambertian dielectric emission light_sampling media"},
     {"next-perlin-spheres", "lambertian textures noise"},
     {"studio", "lambertian metal light_sampling discs"},
