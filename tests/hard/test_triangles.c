@@ -6,16 +6,13 @@
  * met in any direction, to either side, a quarter of the times grazing it, and what it meets next is compared
  * with the exact ray from the exact point, in 113 bits. Exit code 1: a promise of docs/NUMERICS.md was
  * broken. */
-#include "lab.h"
-#include "oracle.h"
-
-#include "packed/pack.h"
+#include "turns.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { TURN_REALS = 16, BATCH = 4000 };
+enum { BATCH = 4000 };
 enum { EDGES, VERTICES, ANYWHERE, KINDS };
 
 typedef struct Mesh {
@@ -24,6 +21,7 @@ typedef struct Mesh {
     size_t vertex_count, face_count;
     BpTriangle triangles[800];
     double normals[800][3], size;
+    bool convex;
 } Mesh;
 
 /* ---- meshes ---- */
@@ -137,28 +135,23 @@ static int sides_of(const Mesh *mesh, size_t plane, size_t face) {
     return sides;
 }
 
-/* Where the ray passes a face: its edge functions, and how far it is. */
-static bool passes(const BpTriangle *triangle, const Wide origin[3], const Wide d[3], Wide tiny, Wide w[3],
-                   Wide *t, bool *outside) {
-    Wide at[3][3];
+/* Rules out most faces without 113 bits: two edge functions of clearly different signs. `tiny` is far more
+ * than the rounding of long doubles, also at a thousand sizes from the origin. */
+static bool surely_passes_by(const BpTriangle *triangle, const long double origin[3], const double *d,
+                             long double tiny) {
+    long double at[3][3];
     for (int k = 0; k < 3; ++k)
-        for (int a = 0; a < 3; ++a) at[k][a] = (Wide)triangle->vertices[k][a] - origin[a];
+        for (int a = 0; a < 3; ++a) at[k][a] = (long double)triangle->vertices[k][a] - origin[a];
     bool below = false, above = false;
     for (int k = 0; k < 3; ++k) {
-        const Wide *p = at[(k + 1) % 3], *q = at[(k + 2) % 3];
-        w[k] = d[0] * (p[1] * q[2] - p[2] * q[1]) + d[1] * (p[2] * q[0] - p[0] * q[2]) +
-               d[2] * (p[0] * q[1] - p[1] * q[0]);
-        below = below || w[k] < -tiny;
-        above = above || w[k] > tiny;
+        const long double *p = at[(k + 1) % 3], *q = at[(k + 2) % 3];
+        const long double w = (long double)d[0] * (p[1] * q[2] - p[2] * q[1]) +
+                              (long double)d[1] * (p[2] * q[0] - p[0] * q[2]) +
+                              (long double)d[2] * (p[0] * q[1] - p[1] * q[0]);
+        below = below || w < -tiny;
+        above = above || w > tiny;
     }
-    const Wide sum = w[0] + w[1] + w[2];
-    if ((below && above) || sum == 0) return false;
-    const Wide volume = at[0][0] * (at[1][1] * at[2][2] - at[1][2] * at[2][1]) +
-                        at[0][1] * (at[1][2] * at[2][0] - at[1][0] * at[2][2]) +
-                        at[0][2] * (at[1][0] * at[2][1] - at[1][1] * at[2][0]);
-    *t = volume / sum;
-    *outside = sum < 0;
-    return true;
+    return below && above;
 }
 
 /* What the exact ray meets first that leaves a face from the exact point that its first part met it at. */
@@ -167,7 +160,7 @@ static Meeting exact_next(const Mesh *mesh, size_t own, const double *ray, const
     Wide origin[3], d[3], w[3], point[3], t;
     bool outside;
     for (int a = 0; a < 3; ++a) origin[a] = (Wide)ray[a] + (Wide)ray[3 + a], d[a] = (Wide)ray[6 + a];
-    passes(left, origin, d, (Wide)1e300, w, &t, &outside);
+    turns_passes(left, origin, d, (Wide)1e300, w, &t, &outside);
     Wide sum = w[0] + w[1] + w[2], b[3], all = 0;
     for (int k = 0; k < 3; ++k) b[k] = w[k] / sum > 0 ? w[k] / sum : 0, all += b[k];
     for (int a = 0; a < 3; ++a) {
@@ -178,10 +171,14 @@ static Meeting exact_next(const Mesh *mesh, size_t own, const double *ray, const
     const bool above = lab_dot(direction, mesh->normals[own]) > 0;
     Meeting best = {-1, false, 0};
     const Wide size = (Wide)mesh->size;
+    long double near_point[3];
+    for (int a = 0; a < 3; ++a) near_point[a] = (long double)point[a];
     for (size_t f = 0; f < mesh->face_count; ++f) {
         bool from_outside;
-        if (f == own || !passes(&mesh->triangles[f], point, d, 1e-26 * size * size, w, &t, &from_outside))
+        if (f == own || surely_passes_by(&mesh->triangles[f], near_point, direction,
+                                         1e-12L * (long double)(mesh->size * mesh->size)))
             continue;
+        if (!turns_passes(&mesh->triangles[f], point, d, 1e-26 * size * size, w, &t, &from_outside)) continue;
         if (from_outside != above || t < -1e-24 * size)
             continue; /* of a closed mesh only faces of the side that the ray is on */
         if (wide_abs(t) < 1e-20 * size) {
@@ -198,23 +195,37 @@ static Meeting exact_next(const Mesh *mesh, size_t own, const double *ray, const
 
 /* ---- rays ---- */
 
-static void random_point(const Mesh *mesh, int kind, uint64_t *random, double point[3]) {
-    const double(*v)[3] = (const double(*)[3])mesh->triangles[lab_bits(random) % mesh->face_count].vertices;
+/* Returns the face that the point is of. */
+static size_t random_point(const Mesh *mesh, int kind, uint64_t *random, double point[3]) {
+    const size_t face = lab_bits(random) % mesh->face_count;
+    const double(*v)[3] = (const double(*)[3])mesh->triangles[face].vertices;
     const double s = lab_unit(random), u = lab_unit(random);
     const unsigned k = (unsigned)(lab_bits(random) % 3);
     for (int a = 0; a < 3; ++a)
         point[a] = kind == EDGES      ? v[k][a] * (1 - s) + v[(k + 1) % 3][a] * s
                    : kind == VERTICES ? v[k][a]
                                       : v[0][a] * (1 - s) + v[1][a] * s * (1 - u) + v[2][a] * s * u;
+    return face;
 }
 
-/* From near the middle, so that nothing lies in between in meshes that are seen whole from there. */
-/* `fine`: the kernel's reals are doubles. The low part of an origin is at most half a unit of its high part.
+/* Where it goes on: anywhere, a quarter of the times along the face, but for up to 1e-4. */
+static void choose_way(const Mesh *mesh, size_t face, uint64_t *random, double d[3]) {
+    lab_direction(random, d);
+    if (lab_bits(random) % 4 == 0) {
+        const double *n = mesh->normals[face], high = lab_dot(d, n);
+        const double left = 1e-4 * (2 * lab_unit(random) - 1);
+        for (int a = 0; a < 3; ++a) d[a] += (left - high) * n[a];
+    }
+    for (int a = 0; a < 3; ++a) d[a] = lab_float(d[a]);
+}
+
+/* From near the middle, so that nothing lies in between in meshes that are seen whole from there.
+ * `fine`: the kernel's reals are doubles. The low part of an origin is at most half a unit of its high part.
  */
-static void aim(const Mesh *mesh, const double centre[3], int kind, bool fine, uint64_t *random,
-                double *ray) {
+static size_t aim(const Mesh *mesh, const double centre[3], int kind, bool fine, uint64_t *random,
+                  double *ray) {
     double point[3], from[3];
-    random_point(mesh, kind, random, point);
+    const size_t face = random_point(mesh, kind, random, point);
     lab_direction(random, from);
     memset(ray, 0, RAY_REALS * sizeof *ray);
     for (int a = 0; a < 3; ++a) {
@@ -224,6 +235,7 @@ static void aim(const Mesh *mesh, const double centre[3], int kind, bool fine, u
         ray[RAY_DIRECTION + a] = point[a] - (ray[RAY_HIGH + a] + ray[RAY_LOW + a]);
     }
     lab_float_unit(ray + RAY_DIRECTION);
+    return face;
 }
 
 typedef struct Count {
@@ -232,61 +244,43 @@ typedef struct Count {
 
 static void run(const Lab *lab, const Mesh *mesh, size_t wanted, uint64_t *random, Count counts[KINDS]) {
     static double rays[BATCH * RAY_REALS], directions[BATCH * 3], out[BATCH * TURN_REALS];
-    BpMaterial matte = {.name = (char *)"matte", .kind = BP_MATERIAL_LAMBERTIAN, .albedo = {0.5, 0.5, 0.5}};
-    BpScene scene = {.path = (char *)"",
-                     .title = (char *)"",
-                     .source = (char *)"",
-                     .notes = (char *)"",
-                     .materials = &matte,
-                     .material_count = 1,
-                     .triangles = (BpTriangle *)(uintptr_t)mesh->triangles,
-                     .triangle_count = mesh->face_count,
-                     .implicit_material = SIZE_MAX};
-    bp_camera_defaults(&scene.camera);
-    scene.camera.width = scene.camera.height = 4;
     double centre[3] = {0, 0, 0};
     for (size_t v = 0; v < mesh->vertex_count; ++v)
         for (int a = 0; a < 3; ++a) centre[a] += mesh->vertices[v][a] / (double)mesh->vertex_count;
-    BpWorker *worker = lab_scene(lab, &scene);
+    BpWorker *worker = turns_worker(lab, mesh->triangles, mesh->face_count);
     for (int kind = 0; kind < KINDS; ++kind)
         for (size_t done = 0; done < wanted; done += BATCH) {
             for (size_t i = 0; i < BATCH; ++i) {
-                double *d = directions + 3 * i;
-                aim(mesh, centre, kind, lab->real_double, random, rays + i * RAY_REALS);
-                lab_direction(random, d);
-                for (int a = 0; a < 3; ++a) d[a] = lab_float(d[a]);
+                const size_t face = aim(mesh, centre, kind, lab->real_double, random, rays + i * RAY_REALS);
+                choose_way(mesh, face, random, directions + 3 * i);
             }
             lab_unit_rays(lab, BATCH, rays);
-            const LabArgument arguments[] = {{LAB_REALS, rays, BATCH * RAY_REALS},
-                                             {LAB_REALS, directions, BATCH * 3},
-                                             {LAB_OUT_REFINED, out, BATCH * TURN_REALS}};
-            lab_run(lab, "probe_turns", BATCH, arguments, 3, worker);
+            turns_run(lab, worker, BATCH, rays, directions, out);
             Count *count = &counts[kind];
             for (size_t i = 0; i < BATCH; ++i) {
                 const double *row = out + i * TURN_REALS;
                 ++count->rays;
-                if (row[0] < 0) {
+                if (row[TURN_MET] < 0) {
                     ++count->lost;
                     continue;
                 }
-                const size_t own = (size_t)row[0];
+                const size_t own = (size_t)row[TURN_MET];
                 const double *first = mesh->triangles[own].vertices[0];
                 Wide height = 0;
-                double size = 0;
-                for (int a = 0; a < 3; ++a) {
-                    height +=
-                        ((Wide)row[6 + a] + (Wide)row[9 + a] - (Wide)first[a]) * (Wide)mesh->normals[own][a];
-                    size += fabs(row[6 + a]);
-                }
+                for (int a = 0; a < 3; ++a)
+                    height += ((Wide)row[TURN_HIGH + a] + (Wide)row[TURN_LOW + a] - (Wide)first[a]) *
+                              (Wide)mesh->normals[own][a];
                 /* The normals here err by 2^-52, over a few sizes. */
-                count->off_plane += fabs((double)height) > row[12] + 0x1p-49 * mesh->size;
-                if (fabs(lab_dot(directions + 3 * i, mesh->normals[own])) < 1e-6) continue;
+                count->off_plane += fabs((double)height) > row[TURN_ERROR] + 0x1p-49 * mesh->size;
+                const double leans = lab_dot(directions + 3 * i, mesh->normals[own]);
+                if (fabs(leans) < 1e-6) continue;
                 const Meeting truth = exact_next(mesh, own, rays + i * RAY_REALS, directions + 3 * i);
-                const bool met = row[3] >= 0;
+                const bool met = row[TURN_NEXT] >= 0;
                 ++count->turns;
-                count->wrong +=
-                    met != (truth.face >= 0) || (met && ((row[4] > 0) != truth.outside ||
-                                                         fabs(row[5] - (double)truth.t) > 1e-4 * mesh->size));
+                /* A convex mesh is not met from outside, and from inside always. */
+                count->wrong += (mesh->convex && met != (leans < 0)) || met != (truth.face >= 0) ||
+                                (met && ((row[TURN_NEXT_OUTSIDE] > 0) != truth.outside ||
+                                         fabs(row[TURN_NEXT_T] - (double)truth.t) > 1e-4 * mesh->size));
             }
         }
     bp_worker_destroy(&worker);
@@ -319,6 +313,7 @@ int main(int argc, char **argv) {
             make_cube(&mesh);
         else
             make_ball(&mesh, 2);
+        mesh.convex = meshes[m].rough == 0;
         finish(&mesh, meshes[m].rough, meshes[m].size, meshes[m].far, &random);
         run(&lab, &mesh, wanted, &random, counts);
         for (int kind = 0; kind < KINDS; ++kind) {

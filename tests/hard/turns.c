@@ -1,0 +1,49 @@
+/* turns.c: what turns.h promises. */
+#include "turns.h"
+
+BpWorker *turns_worker(const Lab *lab, const BpTriangle *triangles, size_t count) {
+    BpMaterial matte = {.name = (char *)"matte", .kind = BP_MATERIAL_LAMBERTIAN, .albedo = {0.5, 0.5, 0.5}};
+    BpScene scene = {.path = (char *)"",
+                     .title = (char *)"",
+                     .source = (char *)"",
+                     .notes = (char *)"",
+                     .materials = &matte,
+                     .material_count = 1,
+                     .triangles = (BpTriangle *)(uintptr_t)triangles,
+                     .triangle_count = count,
+                     .implicit_material = SIZE_MAX};
+    bp_camera_defaults(&scene.camera);
+    scene.camera.width = scene.camera.height = 4;
+    return lab_scene(lab, &scene);
+}
+
+void turns_run(const Lab *lab, BpWorker *worker, size_t rays_count, const double *rays,
+               const double *directions, double *out) {
+    const LabArgument arguments[] = {{LAB_REALS, (double *)(uintptr_t)rays, rays_count * RAY_REALS},
+                                     {LAB_REALS, (double *)(uintptr_t)directions, rays_count * 3},
+                                     {LAB_OUT_REFINED, out, rays_count * TURN_REALS}};
+    lab_run(lab, "probe_turns", rays_count, arguments, 3, worker);
+}
+
+bool turns_passes(const BpTriangle *triangle, const Wide origin[3], const Wide d[3], Wide tiny, Wide w[3],
+                  Wide *t, bool *outside) {
+    Wide at[3][3];
+    for (int k = 0; k < 3; ++k)
+        for (int a = 0; a < 3; ++a) at[k][a] = (Wide)triangle->vertices[k][a] - origin[a];
+    bool below = false, above = false;
+    for (int k = 0; k < 3; ++k) {
+        const Wide *p = at[(k + 1) % 3], *q = at[(k + 2) % 3];
+        w[k] = d[0] * (p[1] * q[2] - p[2] * q[1]) + d[1] * (p[2] * q[0] - p[0] * q[2]) +
+               d[2] * (p[0] * q[1] - p[1] * q[0]);
+        below = below || w[k] < -tiny;
+        above = above || w[k] > tiny;
+    }
+    const Wide sum = w[0] + w[1] + w[2];
+    if ((below && above) || sum == 0) return false;
+    const Wide volume = at[0][0] * (at[1][1] * at[2][2] - at[1][2] * at[2][1]) +
+                        at[0][1] * (at[1][2] * at[2][0] - at[1][0] * at[2][2]) +
+                        at[0][2] * (at[1][0] * at[2][1] - at[1][1] * at[2][0]);
+    *t = volume / sum;
+    *outside = sum < 0;
+    return true;
+}
