@@ -6,7 +6,9 @@
  * All combinations of choices and effects are billions. Written are: with every effect, a covering
  * array of the other choices, so that any three of them come together in some program; and of the sets of
  * effects, with a list and with a tree, a covering array too, and every set that has or lacks one effect at
- * most. These have the other choices of one program of the first kind each, in turn. */
+ * most. These have the other choices of one program of the first kind each, in turn. Programs for triangles
+ * alone have every effect that these may have, and all the other choices; they begin with t, all others with
+ * e. */
 #include "opencl/program.h"
 #include "packed/effects.h"
 #include "support/covering.h"
@@ -63,12 +65,12 @@ static BpStatus dump(const char *folder, const BpProgramOptions *options, BpErro
     char path[4096];
     FILE *file = NULL;
     BpStatus status = BP_OK;
-    snprintf(path, sizeof path, "%s/e%02x_t%d_w%u_l%u_p%d_m%d_n%d_s%d_k%d_r%d_x%d_o%d_a%u%s.cl", folder,
-             (unsigned)options->effects, (int)options->tree, (unsigned)options->tree_width,
-             (unsigned)options->packet_lanes, (int)options->precision, (int)options->math,
-             (int)options->numerics, (int)options->sampler, (int)options->form, (int)options->double_refine,
-             (int)options->pixel_list, (int)options->own_rounding, (unsigned)options->parts,
-             needs_double ? "_fp64" : "");
+    snprintf(path, sizeof path, "%s/%c%02x_t%d_w%u_l%u_p%d_m%d_n%d_s%d_k%d_r%d_x%d_o%d_a%u%s.cl", folder,
+             options->triangles_alone ? 't' : 'e', (unsigned)options->effects, (int)options->tree,
+             (unsigned)options->tree_width, (unsigned)options->packet_lanes, (int)options->precision,
+             (int)options->math, (int)options->numerics, (int)options->sampler, (int)options->form,
+             (int)options->double_refine, (int)options->pixel_list, (int)options->own_rounding,
+             (unsigned)options->parts, needs_double ? "_fp64" : "");
     BP_TRY_GOTO(status,
                 bp_program_source(options, "entry/aovs.cl", bp_kernel_file("entry/aovs.cl"), &source, err),
                 done);
@@ -98,6 +100,12 @@ int main(int argc, char **argv) {
         BpProgramOptions options = combination(combinations[i % count]);
         options.effects = sets[i] & BP_EFFECTS_ALL;
         options.tree = sets[i] >> BP_EFFECT_COUNT != 0;
+        status = dump(argv[1], &options, &err);
+    }
+    for (size_t c = 0; status == BP_OK && c < count; ++c) {
+        BpProgramOptions options = combination(combinations[c]);
+        options.effects = BP_EFFECTS_ALL & ~(1u << BP_EFFECT_LAMPS | 1u << BP_EFFECT_MEDIA);
+        options.triangles_alone = true;
         status = dump(argv[1], &options, &err);
     }
     if (status != BP_OK) fprintf(stderr, "dump_kernels: %s\n", err.message);

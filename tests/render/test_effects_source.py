@@ -1,5 +1,6 @@
 """With an effect's bit off, its code is not in the kernel: looked up in the preprocessed source of many sets, with a list
-and with a tree: those that have, or lack, one effect at most, and a covering array (dump_kernels.c).
+and with a tree: those that have, or lack, one effect at most, and a covering array (dump_kernels.c). Programs for triangles
+alone have no code for spheres.
 
 Usage: test_effects_source.py DUMP_KERNELS
 """
@@ -73,6 +74,10 @@ NEEDING_OTHERS = {
 FOCUSING = ["focuser_importance", "chain_root", "follow_chain", "light_through_focuser", "path->chain"]
 
 
+# Code for spheres, which no program for triangles alone has, and every other one.
+SPHERES = ["sphere_intersect", "sphere_is_candidate", "sphere_exit", "sphere_surface", "load_sphere", "leaf_candidates", "intersect_own_sphere"]
+
+
 def preprocessed(path):
     command = [clang, "-E", "-P", "-x", "cl", "-cl-std=CL1.2", str(path)]
     text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
@@ -105,7 +110,15 @@ def complaints(path):
                bool({"METAL", "DIELECTRIC"} & effects))
     found += [f"{path.name}: {mark!r} {'is missing' if focuses else 'is there'}"
               for mark in FOCUSING if (mark in text) != focuses]
+    found += [f"{path.name}: {mark!r} of spheres is missing" for mark in SPHERES if mark not in text]
     return found, bits, len(text)
+
+
+def spheres_in(path):
+    """In a program for triangles alone."""
+    text = preprocessed(path)
+    assert all(mark in text for mark in MARKS["TRIANGLES"]), path.name
+    return [f"{path.name}: {mark!r} of spheres is there" for mark in SPHERES if mark in text]
 
 
 assert set(BITS) | {"TREE"} == set(MARKS), f"effects.h lists {BITS}: give each its marks here"
@@ -118,7 +131,10 @@ with tempfile.TemporaryDirectory() as folder:
     paths = sorted(pathlib.Path(folder).glob("e*.cl"))
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         results = list(pool.map(complaints, paths))
-found = [line for lines, _, _ in results for line in lines]
+        alone = sorted(pathlib.Path(folder).glob("t*.cl"))
+        with_spheres = list(pool.map(spheres_in, alone))
+assert len(alone) > 10, "no programs for triangles alone were written"
+found = [line for lines, _, _ in results for line in lines] + [line for lines in with_spheres for line in lines]
 print(f"{len(paths)} programs, {len({bits for _, bits, _ in results})} sets of effects; "
       f"{min(size for _, _, size in results)} to {max(size for _, _, size in results)} characters")
 words = {bits | tree << len(BITS) for bits, tree in map(part_of, paths)}
