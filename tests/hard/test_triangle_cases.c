@@ -130,6 +130,15 @@ static bool small_from_afar(const Lab *lab) {
     return judge(lab, "size a millionth of the distance", score(1e-5), RAYS / 100, distance_error(lab));
 }
 
+/* As small, from the origin: an error that follows from the origin's size is 0 there. */
+static bool far_from_the_camera(const Lab *lab) {
+    const double from[3] = {0, 0, 0};
+    add(1e6, -2e5, 3e5, 1e6 + 1, -2e5 + 0.5, 3e5 + 2, 1e6 - 1, -2e5 + 1, 3e5 + 3);
+    for (size_t i = 0; i < RAYS; ++i) aim_at_triangle(rays + i * RAY_REALS, from, 0.3);
+    run(lab);
+    return judge(lab, "the same from the origin", score(1e-5), RAYS / 100, distance_error(lab));
+}
+
 /* 2e6 wide, from 1 above. */
 static bool ground(const Lab *lab) {
     add(-1e6, -1e6, -1, 1e6, -1e6, -1, 1e6, 1e6, -1);
@@ -141,6 +150,45 @@ static bool ground(const Lab *lab) {
     }
     run(lab);
     return judge(lab, "a ground of 2e6, 1 below", score(0), RAYS, 5e-7);
+}
+
+/* Where it leans: the point lies no farther off the plane than the bound that goes with it. */
+static bool leaning_ground(const Lab *lab) {
+    add(-1e6, -2e5, -7e5, 1e6, 1e5, -6e5, 0, 1e5 - 9, 1.3e6); /* 3 below the origin, in its middle */
+    const BpTriangle *ground_triangle = &triangles[0];
+    Wide u[3], v[3], n[3], length = 0, worst = 0;
+    size_t met = 0, off = 0;
+    for (int a = 0; a < 3; ++a) {
+        u[a] = (Wide)ground_triangle->vertices[1][a] - (Wide)ground_triangle->vertices[0][a];
+        v[a] = (Wide)ground_triangle->vertices[2][a] - (Wide)ground_triangle->vertices[0][a];
+    }
+    for (int a = 0; a < 3; ++a) n[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
+    length = wide_sqrt(wide_dot(n, n));
+    for (size_t i = 0; i < RAYS; ++i) {
+        const double s = 1.0 / 3 + between(-1e-6, 1e-6), t = 1.0 / 3 + between(-1e-6, 1e-6);
+        double to[3], from[3];
+        for (int a = 0; a < 3; ++a) {
+            to[a] = (double)((Wide)ground_triangle->vertices[0][a] + (Wide)s * u[a] + (Wide)t * v[a]);
+            from[a] = to[a] + between(-1, 1) + (a == 1 ? 2 : 0);
+        }
+        aim(rays + i * RAY_REALS, from, to);
+    }
+    run(lab);
+    for (size_t i = 0; i < RAYS; ++i) {
+        const double *row = out + i * TURN_REALS;
+        if (row[TURN_MET] < 0) continue;
+        Wide height = 0;
+        for (int a = 0; a < 3; ++a)
+            height +=
+                ((Wide)row[TURN_HIGH + a] + (Wide)row[TURN_LOW + a] - (Wide)ground_triangle->vertices[0][a]) *
+                n[a] / length;
+        ++met;
+        off += wide_abs(height) > (Wide)row[TURN_ERROR];
+        worst = wide_abs(height) > worst ? wide_abs(height) : worst;
+    }
+    printf("%s, a ground of 2e6 that leans: %zu hits, %zu off the plane, at most %.2g\n", lab->name, met, off,
+           (double)worst);
+    return off == 0 && met > RAYS / 2;
 }
 
 /* Rays in the plane of a triangle, some of them through it. */
@@ -266,6 +314,27 @@ static bool no_thickness(const Lab *lab) {
     return wrong == 0;
 }
 
+/* From the origin to edges in a plane of many triangles, along which the boxes of leaves and nodes end. */
+static bool edges_of_boxes(const Lab *lab) {
+    const double from[3] = {0, 0, 0};
+    add_square(16, 1);
+    for (size_t f = 0; f < triangle_count; ++f)
+        for (int k = 0; k < 3; ++k) triangles[f].vertices[k][2] = -0.75;
+    for (size_t i = 0; i < RAYS; ++i) {
+        const double(*v)[3] = (const double(*)[3])triangles[lab_bits(&state) % triangle_count].vertices;
+        const double s = between(0, 1);
+        double to[3];
+        for (int a = 0; a < 3; ++a) to[a] = v[0][a] + s * (v[1 + i % 2][a] - v[0][a]);
+        if (fabs(to[0]) > 0.99 || fabs(to[1]) > 0.99) to[0] = to[1] = 0;
+        aim(rays + i * RAY_REALS, from, to);
+    }
+    run(lab);
+    size_t lost = 0;
+    for (size_t i = 0; i < RAYS; ++i) lost += out[i * TURN_REALS + TURN_MET] < 0;
+    printf("%s, edges of flat boxes: %zu lost\n", lab->name, lost);
+    return lost == 0;
+}
+
 /* Two planes that meet at an edge, at all angles; the edge is aimed at from between them, and what leaves
  * between the planes' outer sides, beyond the other plane, must meet that. */
 static bool concave_edge(const Lab *lab) {
@@ -354,9 +423,22 @@ static bool duplicate(const Lab *lab) {
 }
 
 int main(int argc, char **argv) {
-    static bool (*const cases[])(const Lab *) = {
-        small_from_afar, ground,       in_its_plane, grazing,  sliver,   tiny,     huge,
-        along_axes,      no_thickness, concave_edge, diagonal, coplanar, duplicate};
+    static bool (*const cases[])(const Lab *) = {small_from_afar,
+                                                 far_from_the_camera,
+                                                 ground,
+                                                 leaning_ground,
+                                                 in_its_plane,
+                                                 grazing,
+                                                 sliver,
+                                                 tiny,
+                                                 huge,
+                                                 along_axes,
+                                                 no_thickness,
+                                                 edges_of_boxes,
+                                                 concave_edge,
+                                                 diagonal,
+                                                 coplanar,
+                                                 duplicate};
     Lab lab;
     int failed = 0;
     if (argc != 2) {

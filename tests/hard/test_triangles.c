@@ -278,9 +278,10 @@ static void run(const Lab *lab, const Mesh *mesh, size_t wanted, uint64_t *rando
                 const bool met = row[TURN_NEXT] >= 0;
                 ++count->turns;
                 /* A convex mesh is not met from outside, and from inside always. */
-                count->wrong += (mesh->convex && met != (leans < 0)) || met != (truth.face >= 0) ||
-                                (met && ((row[TURN_NEXT_OUTSIDE] > 0) != truth.outside ||
-                                         fabs(row[TURN_NEXT_T] - (double)truth.t) > 1e-4 * mesh->size));
+                count->wrong +=
+                    (mesh->convex && met != (leans < 0)) || met != (truth.face >= 0) ||
+                    (met && ((row[TURN_NEXT_OUTSIDE] > 0) != truth.outside || row[TURN_NEXT_T] < 0 ||
+                             fabs(row[TURN_NEXT_T] - (double)truth.t) > 1e-4 * mesh->size));
             }
         }
     bp_worker_destroy(&worker);

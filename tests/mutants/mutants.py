@@ -96,6 +96,16 @@ def edges_and_turns(variant):
     return Program("hard_triangles", (variant, "4000"), "1 exact")
 
 
+def triangle_cases(variant="double"):
+    """Single hard cases of triangles (tests/hard/test_triangle_cases.c)."""
+    return Program("hard_triangle_cases", (variant,), "1 exact")
+
+
+def triangle_optics(*names):
+    """Tests of tests/agree/test_triangle_optics.py."""
+    return Script("tests/agree/test_triangle_optics.py", tuple(f"Optics.test_{name}" for name in names), "4 closed forms")
+
+
 def patch(path, find, replace):
     return (path, find, replace)
 
@@ -1678,5 +1688,63 @@ MUTANTS = [
     Mutant("the reference's triangles have one side", "triangles: the reference",
            [patch("host/reference/trace.c", "if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0))) return false;",
                   "if (!(u >= 0 && v >= 0 && w >= 0)) return false;")],
+           [triangles("reference")]),
+    Mutant("triangles are met beside them, too", "triangles: both signs of edge functions taken",
+           [patch(KERNEL, "return vbool_not(below & above) & (wide_below_0(*sum)", "return (wide_below_0(*sum)")], [triangle_cases()]),
+    Mutant("rays between two axes are turned to the third", "triangles: two components that are equal, and a third of 0",
+           [patch(KERNEL, "shear.along_y = vbool_not(x > y) & (y > z);", "shear.along_y = (y > x) & (y > z);")], [triangle_cases()]),
+    Mutant("turned triangles change hands", "triangles: two axes exchanged where one follows the other",
+           [patch(KERNEL, "return vec3(choose(x, v.y, choose(y, v.z, v.x)), choose(x, v.z, choose(y, v.x, v.y)),",
+                  "return vec3(choose(x, v.z, choose(y, v.z, v.x)), choose(x, v.y, choose(y, v.x, v.y)),")], [triangles("prism")]),
+    Mutant("edge functions without the errors of their products", "triangles: a difference of rounded products",
+           [patch("kernels/shape/wide.cl", "return (p - q) + (fma(x1, y2, -p) - fma(y1, x2, -q));", "return p - q;")],
+           [triangle_cases()]),
+    Mutant("a margin without depth", "triangles: a candidate's error by its width alone",
+           [patch(KERNEL, "loose_fma(splat(R(8.0) * ROUNDOFF), across + along, R(2.0) * shear->margin)",
+                  "loose_fma(splat(R(8.0) * ROUNDOFF), across, R(2.0) * shear->margin)")], [triangle_cases()]),
+    Mutant("a margin that is hundreds of times too small", "triangles: the margin of edge functions",
+           [patch(KERNEL, "const vreal margin = R(6.0) * delta * (across + delta);", "const vreal margin = R(0.02) * delta * (across + delta);")],
+           [edges_and_turns("double"), triangle_cases()]),
+    Mutant("what is met at once lies behind", "triangles: distances that rounding made negative stay so",
+           [patch(KERNEL, "*t = choose_refined(ruled & vbool_of_refined(*t < splat_refined(0)), splat_refined(0), *t);", "")],
+           [edges_and_turns("double")]),
+    Mutant("a triangle's normal is long", "triangles: the cross product as it is",
+           [patch(KERNEL, "return scale3(fma(excess, splat(R(-0.5)), splat(1)), unit);", "return part;")], [triangles("prism")]),
+    Mutant("a point on a triangle in float", "triangles: its low part left out",
+           [patch("kernels/shape/wide.cl", "*low = to_real(a - to_refined(*high));", "*low = splat(0);")], [edges_and_turns("double")]),
+    Mutant("a point's error without the edges", "triangles: the bound by the distance alone",
+           [patch(KERNEL, "point->error = fma(one_norm(to_b) + one_norm(to_c), splat(WIDE_POINT_ERROR), size * R(0x1p-45));",
+                  "point->error = size * R(0x1p-45);")], [triangle_cases()]),
+    Mutant("the plane that is left is met again", "triangles: neighbours in one plane, at once",
+           [patch(KERNEL, "const vbool reached = (wide_above_0(leans)", "const vbool reached = at_once | (wide_above_0(leans)"),
+            patch(KERNEL, "const vbool from_above = here.above & vbool_not(here.below)", "const vbool from_above = vbool_not(here.below)")],
+           [triangle_cases()]),
+    Mutant("the first leaf of triangles holds spheres", "triangles: the kind of a leaf, off by one",
+           [patch("kernels/bvh/traverse_single.cl", "if (leaf_number >= geometry->first_triangles) {", "if (leaf_number > geometry->first_triangles) {")],
+           [triangles("forms")]),
+    Mutant("triangles read where spheres stand", "triangles: the place of a slot in another array",
+           [patch("kernels/bvh/hit.cl", "(slot - lane - geometry->first_triangles * TREE_WIDTH) * 9u + lane;", "(slot - lane) * 9u + lane;")],
+           [triangles("reference")]),
+    Mutant("a triangle's place before the camera's is taken off", "triangles: vertices as floats, then moved",
+           [patch("host/packed/tree_write.c", "t->vertices[lane < count ? k : 0][a] - writer->origin[a]);",
+                  "(float)t->vertices[lane < count ? k : 0][a] - (float)writer->origin[a]);")], [triangle_optics("moved")]),
+    Mutant("boxes of triangles are narrowed", "triangles: the widening of boxes with the other sign",
+           [patch("host/packed/tree_write.c", "own.low[a] -= 4 * unit * fabs(own.low[a]) + 8 * unit * longest + (double)FLT_MIN;",
+                  "own.low[a] += 4 * unit * fabs(own.low[a]) + 8 * unit * longest + (double)FLT_MIN;"),
+            patch("host/packed/tree_write.c", "own.high[a] += 4 * unit * fabs(own.high[a]) + 8 * unit * longest + (double)FLT_MIN;",
+                  "own.high[a] -= 4 * unit * fabs(own.high[a]) + 8 * unit * longest + (double)FLT_MIN;")],
+           [triangle_cases()]),
+    Mutant("a triangle without an area is rendered", "triangles: a line for a triangle",
+           [patch("host/scene/triangle_rules.c", "bp_length(area) > LEAST_AREA * longest * longest &&", "bp_length(area) >= 0 &&")], [triangles("refusals")]),
+    Mutant("glass whose sides face both ways", "triangles: each edge twice, whichever way",
+           [patch("host/scene/triangle_rules.c", "edge->way = forward ? 1 : -1;", "edge->way = count % 2 == 0 ? 1 : -1;")], [triangles("refusals")]),
+    Mutant("glass on glass", "triangles: what lies in one plane with glass is not looked for",
+           [patch("host/scene/triangle_rules.c", "return !apart(a, b, normal, TOUCHES * longest) && !apart(b, a, other, TOUCHES * longest);", "return false;")],
+           [triangles("refusals")]),
+    Mutant("the camera on a triangle", "triangles: a lookfrom that lies on one is not seen",
+           [patch("host/scene/triangle_rules.c", "if (bp_dot(part, area) < -ON_CAMERA * whole) return false;", "if (bp_dot(part, area) < whole) return false;")],
+           [triangles("refusals")]),
+    Mutant("spheres hide what stands on them", "triangles: own slot of a sphere among triangles",
+           [patch("kernels/bvh/hit.cl", "const vbool leaves = active & is_triangle(geometry, ray->own_slot);", "const vbool leaves = active;")],
            [triangles("reference")]),
 ]
