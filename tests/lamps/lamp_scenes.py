@@ -313,7 +313,8 @@ def has_lamp(scene):
     discs = background.get("discs", []) if isinstance(background, dict) else []
     discs = discs + [image for image in VARIED_SKIES if image == around]
     lamps = [each for each in lamps if len(spheres) < 2 or not all(each is other or holds(each, other) for other in spheres)]
-    lit = (any(each["type"] == "lambertian" or fuzzy(each.get("fuzz", 0)) for each in used)
+    flat = [scene["materials"][each["material"]] for member in ("triangles", "quads", "boxes") for each in scene.get(member, [])]
+    lit = (any(each["type"] == "lambertian" or fuzzy(each.get("fuzz", 0)) for each in used + flat)
            or any(scatters(scene, name) for name in [scene.get("medium"), *(each.get("interior") for each in spheres)]))
     return bool(lamps or discs) and lit and (bool(discs) or not outshone(scene, used))
 
