@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char *name_of(const BpMeshSet *set) {
     return set->name != NULL ? set->name : "the mesh";

@@ -7,6 +7,7 @@
 #include "scene/scene_fault.h"
 
 #include <math.h>
+#include <string.h>
 
 static const char *name_of(const BpSphereSet *set) {
     return set->name != NULL ? set->name : "the spheres";

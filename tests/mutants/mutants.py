@@ -86,6 +86,11 @@ def caustics(*names):
     return Script("tests/caustics/test_caustics.py", names, "9 caustics")
 
 
+def mesh_scenes(*names):
+    """Tests of tests/meshes/test_mesh_scenes.py."""
+    return Script("tests/meshes/test_mesh_scenes.py", tuple(f"Meshes.test_{name}" for name in names), "1 exact")
+
+
 def triangles(*names):
     """Tests of tests/agree/test_triangles.py."""
     return Script("tests/agree/test_triangles.py", tuple(f"Triangles.test_{name}" for name in names), "1 exact")
@@ -223,7 +228,7 @@ MUTANTS = [
            [test("test_depth_cues", "far_things_fade_into_the_backdrop")]),
     # ---- spheres from arrays ---------------------------------------------------------------------------------
     Mutant("arrays read across", "an array in the other order, as C and Fortran have them",
-           [patch("host/formats/scene_sets.c", "(ptrdiff_t)row * rows->row_stride + column * rows->column_stride;",
+           [patch("host/formats/rows.c", "(ptrdiff_t)row * rows->row_stride + column * rows->column_stride;",
                   "(ptrdiff_t)row * rows->column_stride + column * rows->row_stride;")],
            [test("test_library_arrays", "test_same_picture_as_listed")]),
     Mutant("a packed file counts as text", "this program: a scene packed by bzip2 got the error of a JSON parser",
@@ -599,7 +604,7 @@ MUTANTS = [
            [patch(KERNEL, "(total & as_reflection) | (vbool_not(total) & by_chance)", "vbool_not(total) & by_chance")],
            [check("book:v4-17-air-bubble", 64), check("book:v3-16-glass-hollow", 64)]),
     Mutant("negative radius ignored", "fourth: max(0, r)",
-           [patch(PACK, "pack_material(&scene->materials[m], is_inside_out(scene, sphere),", "pack_material(&scene->materials[m], false,")],
+           [patch(PACK, "pack_material(&scene->materials[m], is_inside_out(scene, i),", "pack_material(&scene->materials[m], false,")],
            [check("hollow-total-reflect")]),
     Mutant("fuzz squared", "roughness taken for its square",
            [patch(PACK, "if (inside_out) numbers", "numbers->fuzz *= numbers->fuzz;\n    if (inside_out) numbers")],
@@ -1671,15 +1676,37 @@ MUTANTS = [
            [patch("host/formats/scene_triangles.c", "at[3][a] = at[0][a] + v[a];", "at[3][a] = v[a];")],
            [triangles("places_of_quads")]),
     Mutant("boxes turned the other way", "triangles: the sine's sign",
-           [patch("host/formats/scene_triangles.c", "*sine = sin(degrees * (PI / 180));", "*sine = -sin(degrees * (PI / 180));")],
+           [patch("host/scene/placement.c", "*sine = sin(degrees * (PI / 180));", "*sine = -sin(degrees * (PI / 180));")],
            [triangles("places_of_boxes")]),
     Mutant("boxes turned about z first", "triangles: the order of turns",
-           [patch("host/formats/scene_triangles.c", "for (int axis = 0; axis < 3; axis++) {\n        double sine", "for (int axis = 2; axis >= 0; axis--) {\n        double sine")],
-           [triangles("places_of_boxes")]),
+           [patch("host/scene/placement.c", "for (int axis = 0; axis < 3; axis++) {\n        const int a", "for (int axis = 2; axis >= 0; axis--) {\n        const int a")],
+           [triangles("places_of_boxes"), mesh_scenes("placement")]),
     Mutant("boxes moved before they are turned", "triangles: the order of transforms",
-           [patch("host/formats/scene_triangles.c", "        rotate(degrees, at[corner]);\n        for (int a = 0; a < 3; a++) at[corner][a] += way[a];",
-                  "        for (int a = 0; a < 3; a++) at[corner][a] += way[a];\n        rotate(degrees, at[corner]);")],
+           [patch("host/scene/placement.c", "point[a] *= placement->scale[a];", "point[a] = point[a] * placement->scale[a] + placement->translate[a];"),
+            patch("host/scene/placement.c", "    for (int a = 0; a < 3; a++) point[a] += placement->translate[a];\n", "")],
            [triangles("places_of_boxes")]),
+    Mutant("meshes scaled after they are moved", "shapes.md 37: the order of transforms",
+           [patch("host/scene/placement.c", "    for (int a = 0; a < 3; a++) point[a] *= placement->scale[a];\n", ""),
+            patch("host/scene/placement.c", "point[a] += placement->translate[a];", "point[a] = (point[a] + placement->translate[a]) * placement->scale[a];")],
+           [mesh_scenes("placement")]),
+    Mutant("mirrored meshes inside out", "meshes: the winding under a mirror",
+           [patch("host/formats/mesh_triangles.c", "mirrored && k > 0 ? 3 - k : k", "mirrored && k > 3 ? 3 - k : k")],
+           [mesh_scenes("mirrored_glass")]),
+    Mutant("the colour of one vertex for the mean", "meshes: colours of vertices",
+           [patch("host/formats/mesh_triangles.c", "mesh->vertex_colors[mesh->faces[face][k]][c]", "mesh->vertex_colors[mesh->faces[face][0]][c]")],
+           [mesh_scenes("colors")]),
+    Mutant("triangles without their own colours", "meshes: the packed colours of slots",
+           [patch("host/packed/pack.c", "albedos[s] = used ?", "albedos[s] = used && shapes[s] < scene->sphere_count ?")],
+           [mesh_scenes("colors")]),
+    Mutant("the reference without colours of triangles", "meshes: the reference",
+           [patch("host/reference/material.c", ": hit->triangle != NULL ? hit->triangle->albedo", ": hit->triangle == NULL ? hit->triangle->albedo")],
+           [mesh_scenes("check_colors")]),
+    Mutant("glass of a file that is not closed", "meshes: the edge that is named",
+           [patch("host/formats/mesh_triangles.c", "edge.fault != BP_MESH_EDGE_GOOD", "edge.fault == BP_MESH_EDGE_TURNED")],
+           [mesh_scenes("open_glass")]),
+    Mutant("overlaps across halves of space", "triangles: one list for each triangle",
+           [patch("host/scene/triangle_overlap.c", "side == 0 ? box->low[axis] <= middle : box->high[axis] >= middle", "(side == 0) == (box->low[axis] <= middle)")],
+           [test("test_triangle_overlap", "one_is_found")]),
     Mutant("a side of a box inside out", "triangles: the winding of one side",
            [patch("host/formats/scene_triangles.c", "{0, 4, 6, 2}", "{0, 2, 6, 4}")], [triangles("places_of_boxes")]),
     Mutant("a triangle's box from two vertices", "triangles: the third left out of its bounds",
