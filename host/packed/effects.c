@@ -312,7 +312,7 @@ static bool explain_environment(const BpScene *scene, size_t size, char *reason)
 static bool explain_triangles(const BpScene *scene, size_t size, char *reason) {
     const size_t emitting = bp_scene_emitting_triangles(scene);
     if (scene->triangle_count == 0)
-        snprintf(reason, size, "no triangles, quads or boxes");
+        snprintf(reason, size, "no triangles, quads, boxes or meshes");
     else if (emitting > 0)
         snprintf(reason, size, "%zu triangle%s; %zu of them emit%s, found by chance: no rays are sent to %s",
                  scene->triangle_count, bp_plural(scene->triangle_count), emitting, emitting == 1 ? "s" : "",

@@ -17,8 +17,9 @@ const BpCommand bp_commands[] = {
         .description =
             "Renders each SCENE, a JSON document (see scenes/README.md; \"-\" is standard input, for "
             "every command that takes a scene), or a file of particles (.xyz, .pdb, .pqr, .cif, .gro, "
-            ".dump, .lammpstrj, .data, .gsd, .csv, .ply, and .gz of each; see docs/PARTICLES.md). The "
-            "picture is named after the scene and written to the current folder, unless --output names "
+            ".dump, .lammpstrj, .data, .gsd, .csv, .ply, and .gz of each; see docs/PARTICLES.md) or a "
+            "mesh (.ply with faces, .obj, .stl, .off). The picture is named after the scene and written to "
+            "the current folder, unless --output names "
             "another file or folder. The ending "
             "selects the format: .png, .ppm, .pfm, .exr (with layers for noise, samples, depth, "
             "normal and albedo), or .bpa, which keeps the sums of the samples for `ballpark "
@@ -229,10 +230,11 @@ const BpCommand bp_commands[] = {
         .description =
             "Prints, as a JSON document, the scene that `ballpark render FILE` would "
             "render, to standard output or with -o to a file. For a file of particles (XYZ, PDB, PQR, "
-            "mmCIF, GRO, LAMMPS dump and data, GSD, CSV, PLY; each also packed by gzip), the document "
-            "contains all choices: camera, light, style. The particles stay in their file, which the "
-            "document "
-            "names. docs/PARTICLES.md describes its members.",
+            "mmCIF, GRO, LAMMPS dump and data, GSD, CSV, PLY; each also packed by gzip) or of a mesh "
+            "(PLY with faces, OBJ, STL, OFF), the document contains all choices: camera, light, style or "
+            "materials. "
+            "Particles and meshes stay in their file, which the document names. docs/PARTICLES.md and "
+            "scenes/README.md describe its members.",
         .examples = "  ballpark scene protein.pdb -o protein.json\n"
                     "  ballpark scene run.gsd --frame -1 | ballpark render - -o last.png\n",
         .bit = BP_SCENE,

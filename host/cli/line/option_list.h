@@ -264,7 +264,8 @@ enum {
     NOTE(EXPOSURE, BP_RENDER | BP_MERGE | BP_VIEW, NULL, "0")                                                \
     NOTE(BIT_DEPTH, BP_RENDER | BP_MERGE, NULL, "8")                                                         \
     NOTE(PROJECTION, BP_TRACERS | BP_SCENE, NULL, "the scene's")                                             \
-    NOTE(LIGHTING, BP_TRACERS | BP_SCENE, NULL, "the scene's; soft for a file of particles")                 \
+    NOTE(LIGHTING, BP_TRACERS | BP_SCENE, NULL,                                                              \
+         "the scene's; soft for a file of particles, studio for a mesh")                                     \
     NOTE(FORMAT, BP_RENDER | BP_MERGE, NULL, "by the ending of FILE, otherwise png")                         \
     NOTE(MARGIN, BP_CHECK, NULL, "0.5%, with --suite 1%")                                                    \
     NOTE(TIMEOUT, BP_CHECK, NULL, "no limit; 20s to list devices")                                           \
