@@ -18,6 +18,7 @@ static const char *kind_text(mode_t mode) {
 }
 
 static BpStatus fail_open(const char *path, BpError *err) {
+    if (errno == ENOMEM) return bp_fail(err, BP_ERR_MEMORY, "out of memory for opening %s", path);
     const BpStatus status = bp_fail(err, BP_ERR_SCENE, "cannot open it: %s; check the path", strerror(errno));
     bp_error_at(err, path, 0, 0);
     return status;

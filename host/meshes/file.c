@@ -3,6 +3,7 @@
 
 #include "base/encoding.h"
 #include "base/input_file.h"
+#include "base/words.h"
 #include "reader.h"
 
 #include <locale.h>
@@ -12,10 +13,14 @@
 
 typedef enum Format { FORMAT_NONE, FORMAT_PLY, FORMAT_OBJ, FORMAT_STL, FORMAT_OFF, FORMAT_FOREIGN } Format;
 
-static ReadMesh *const readers[] = {[FORMAT_PLY] = mesh_read_ply,
-                                    [FORMAT_OBJ] = mesh_read_obj,
-                                    [FORMAT_STL] = mesh_read_stl,
-                                    [FORMAT_OFF] = mesh_read_off};
+#define READERS(X)                                                                                           \
+    X(FORMAT_NONE, NULL)                                                                                     \
+    X(FORMAT_PLY, mesh_read_ply)                                                                             \
+    X(FORMAT_OBJ, mesh_read_obj)                                                                             \
+    X(FORMAT_STL, mesh_read_stl)                                                                             \
+    X(FORMAT_OFF, mesh_read_off)                                                                             \
+    X(FORMAT_FOREIGN, NULL)
+BP_WORDS(Format, static ReadMesh *const readers, READERS);
 
 /* Formats that are not read, by what their files begin with, if that is always the same, and how they are
  * named. */
