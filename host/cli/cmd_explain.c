@@ -47,8 +47,8 @@ static bool is_black(const double colour[3]) {
 static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
     if (!step->goes_on && bp_material_is(kind, BP_SCATTERS)) return "absorbs it";
     if (step->goes_on && bp_material_is(kind, BP_HAS_INSIDE) && kind != BP_MATERIAL_INTERFACE) {
-        if (step->enters) return step->inward ? "refracts it into the sphere" : "reflects it";
-        return step->inward ? "reflects it back inside" : "refracts it out of the sphere";
+        if (step->enters) return step->inward ? "refracts it inward" : "reflects it";
+        return step->inward ? "reflects it back inside" : "refracts it outward";
     }
     return bp_material_types[kind].outcome;
 }
@@ -482,9 +482,10 @@ static json_t *scene_json(const char *path, const BpScene *scene, const BpEffect
         json_array_append_new(list, json_pack("{s:s, s:s, s:b, s:s}", "name", effects[e].name, "description",
                                               effects[e].description, "simulated", effects[e].simulated,
                                               "reason", effects[e].reason));
-    return json_pack("{s:o, s:s, s:I, s:I, s:o, s:s, s:s}", "scene", bp_json_text(path), "title", info.title,
-                     "spheres", (json_int_t)info.spheres, "materials", (json_int_t)info.materials, "effects",
-                     list, "acceleration", bp_acceleration_name(chosen), "acceleration_reason", reason);
+    return json_pack("{s:o, s:s, s:I, s:I, s:I, s:o, s:s, s:s}", "scene", bp_json_text(path), "title",
+                     info.title, "spheres", (json_int_t)info.spheres, "triangles", (json_int_t)info.triangles,
+                     "materials", (json_int_t)info.materials, "effects", list, "acceleration",
+                     bp_acceleration_name(chosen), "acceleration_reason", reason);
 }
 
 /* ---- the command -------------------------------------------------------------------------------------- */

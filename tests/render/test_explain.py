@@ -68,12 +68,17 @@ paths = sorted(scenes.glob("*.json"))
 paths = [path for path in paths if path.name != "scene.schema.json"]
 document = json.loads(run("explain", *paths, "--json", "-").stdout)["scenes"]
 assert [entry["scene"] for entry in document] == list(map(str, paths))
+for entry in document:  # those of the scene, by its own members
+    scene = json.loads(pathlib.Path(entry["scene"]).read_text())
+    listed = len(scene.get("triangles", [])) + 2 * len(scene.get("quads", [])) + 12 * len(scene.get("boxes", []))
+    assert entry["triangles"] == listed, entry["scene"]
 for entry in document:
     assert [effect["name"] for effect in entry["effects"]] == ALL
     assert all(effect["reason"] and effect["description"] for effect in entry["effects"])
     assert "costs" not in entry
-    assert entry["acceleration"] == ("tree" if entry["spheres"] > 32 else "list"), entry["scene"]
-    assert entry["acceleration"] in entry["acceleration_reason"] or entry["spheres"] == 0, entry["scene"]
+    shapes = entry["spheres"] + entry["triangles"]
+    assert entry["acceleration"] == ("tree" if shapes > 32 else "list"), entry["scene"]
+    assert entry["acceleration"] in entry["acceleration_reason"] or shapes == 0, entry["scene"]
 
 # Mistakes are refused, and leave no file.
 with tempfile.TemporaryDirectory() as folder:
