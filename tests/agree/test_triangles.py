@@ -190,22 +190,22 @@ class Triangles(unittest.TestCase):
         for text in says:
             self.assertIn(text, said)
 
-    def test_what_is_not_looked_for(self):
-        """No pilot knows triangles: where samples may leave light to chance, that is said, and else it is not."""
+    def test_where_light_may_be_left_to_chance(self):
+        """A pilot looks for it there, and nowhere else."""
         ball = {"center": [0.3, 0.4, 1.6], "radius": 0.4, "material": "glass"}
         lamp = {"center": [0, 3.5, 1], "radius": 0.01, "material": "lamp"}
         mirror = {"corner": [-2, 0, -3], "u": [4, 0, 0], "v": [0, 3, 0], "material": "mirror"}
         shining = {**mirror, "material": "lamp"}
-        for members, said in (({"spheres": [ball, lamp], "quads": [FLOOR]}, "by way of glass and mirrors"),
-                              ({"spheres": [lamp], "quads": [FLOOR, mirror]}, "by way of glass and mirrors"),
-                              ({"quads": [FLOOR, shining]}, "2 triangles give light that is found by chance"),
-                              ({"spheres": [ball], "quads": [FLOOR]}, None), ({"quads": [FLOOR, mirror]}, None)):
-            made = self.run_ballpark(scene(**members), "render", "--spp", "2", "-o", "p.pfm", "--wide")
+        for members, by_triangles in (({"spheres": [ball, lamp], "quads": [FLOOR]}, 0), ({"spheres": [lamp], "quads": [FLOOR, mirror]}, 1),
+                                      ({"quads": [FLOOR, shining]}, 0), ({"spheres": [ball], "quads": [FLOOR]}, None),
+                                      ({"quads": [FLOOR, mirror]}, None)):
+            made = self.run_ballpark(scene(**members), "render", "--spp", "2", "-o", "p.pfm", "--stats", "p.json")
             self.assertEqual(made.returncode, 0, made.stderr)
-            errors = made.stderr
-            if said is not None:
-                self.assertIn(said, errors)
-            self.assertEqual("the noise is more than is said" in errors, said is not None, errors)
+            unseen = json.loads((self.path / "p.json").read_text())["unseen"]
+            self.assertEqual(unseen is not None, by_triangles is not None, (members, unseen))
+            if unseen is not None:
+                self.assertGreater(unseen["variance"], 0)
+                self.assertEqual(unseen["triangles"] > 0.5, by_triangles == 1, unseen)
 
     def test_refusals(self):
         triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]

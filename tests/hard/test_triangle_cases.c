@@ -22,7 +22,7 @@ static void add(double ax, double ay, double az, double bx, double by, double bz
                 double cz) {
     const double at[3][3] = {{ax, ay, az}, {bx, by, bz}, {cx, cy, cz}};
     BpTriangle *triangle = &triangles[triangle_count++];
-    memset(triangle, 0, sizeof *triangle);
+    *triangle = (BpTriangle){.albedo = BP_NO_ALBEDO};
     for (int k = 0; k < 3; ++k)
         for (int a = 0; a < 3; ++a) triangle->vertices[k][a] = lab_float(at[k][a]);
 }

@@ -186,11 +186,12 @@ class Means(cli.ProgramTest):
             sides = ([1, 0, 0], [0, 0.4, 1])
             above = self.quad([0.4, 6.5, 0.3], *(sides[::-1] if turned else sides), "lamp")  # behind the camera
             self.compare(self.room(2, {"lamp": lamp(20)}, above), 1024)
-        # Beside a lamp that rays are sent to, and which hardly shines.
-        document = self.room(3, {"lamp": lamp(20), "dim": lamp(1e-6)}, self.quad([3, 2.5, 0], [0.6, 0, 0], [0, 0, 0.6], "lamp"),
-                             self.quad([3.7, 0, -3], [0, 0, 6], [0, 5, 0], "floor"), self.quad([2, 1.9, -3], [3, 0, 0], [0, 0, 6], "floor"),
-                             spheres=[{"center": [0, 30, 0], "radius": 0.1, "material": "dim"}])
-        self.compare(document, 8192)
+        # Alone, and beside a lamp that rays are sent to, and which hardly shines.
+        for others in ([], [{"center": [0, 30, 0], "radius": 0.1, "material": "dim"}]):
+            document = self.room(3, {"lamp": lamp(20), "dim": lamp(1e-6)}, self.quad([3, 2.5, 0], [0.6, 0, 0], [0, 0, 0.6], "lamp"),
+                                 self.quad([3.7, 0, -3], [0, 0, 6], [0, 5, 0], "floor"), self.quad([2, 1.9, -3], [3, 0, 0], [0, 0, 6], "floor"),
+                                 spheres=others)
+            self.compare(document, 4096)
 
     def test_lamp_of_triangles_behind_glass(self):
         """What meets glass first belongs to the glass, and what does not to nothing."""
