@@ -123,7 +123,7 @@ static Spread first_spread(const BpPilot *pilot) {
 /* Behind a surface: what is curved spreads them, or gathers them, which counts as if it spread them too. */
 static void spread_at(const BpScene *scene, const BpPilotSegment *segment, const BpPilotSegment *next,
                       const double normal[3], Spread *spread) {
-    if (bp_pilot_triangle(scene, segment->shape) != NULL) return;
+    if (bp_pilot_is_triangle(scene, segment->shape)) return;
     const double radius = fabs(scene->spheres[segment->shape].radius);
     const double cosine = fmax(fabs(bp_dot(segment->direction, normal)), 0.2);
     const bool reflected = bp_dot(next->direction, normal) > 0;

@@ -148,7 +148,7 @@ static void join_one(const BpScene *scene, const BpPilotEye *eye, const BpPilotP
     const double cosine = bp_dot(back, eye->normal);
     if (away2 > eye->radius * eye->radius || cosine <= 0 || eye->segments + photon->segments > max_depth)
         return;
-    if (eye->shape >= scene->sphere_count && bp_dot(eye->normal, photon->normal) < ALIKE) return;
+    if (bp_pilot_is_triangle(scene, eye->shape) && bp_dot(eye->normal, photon->normal) < ALIKE) return;
     const BpMaterial *material = bp_pilot_material(scene, eye->shape);
     const double density = bp_pilot_density(material, eye->axis, back) / fmax(cosine, COSINE_MIN);
     const double probability = density * photon->measure / (PI * eye->radius * eye->radius);

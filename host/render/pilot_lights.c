@@ -114,19 +114,16 @@ static void add_texels(const BpScene *scene, size_t room, BpPilotAim *aim) {
 
 /* ---- lamps: spheres that rays are sent to, and all triangles that emit ---- */
 
-static bool is_triangle(const BpScene *scene, size_t shape) {
-    return shape >= scene->sphere_count;
-}
-
 static bool is_lamp(const BpScene *scene, size_t shape, size_t enclosing) {
-    return is_triangle(scene, shape) ? bp_luminance_of(bp_pilot_material(scene, shape)->emit) > 0
-                                     : bp_sphere_is_sampled(scene, shape, enclosing);
+    return bp_pilot_is_triangle(scene, shape) ? bp_luminance_of(bp_pilot_material(scene, shape)->emit) > 0
+                                              : bp_sphere_is_sampled(scene, shape, enclosing);
 }
 
 static double radius_of(const BpScene *scene, size_t shape) {
     double normal[3];
-    return is_triangle(scene, shape) ? sqrt(bp_pilot_area(bp_pilot_triangle(scene, shape), normal) / PI)
-                                     : fabs(scene->spheres[shape].radius);
+    return bp_pilot_is_triangle(scene, shape)
+               ? sqrt(bp_pilot_area(bp_pilot_triangle(scene, shape), normal) / PI)
+               : fabs(scene->spheres[shape].radius);
 }
 
 /* All lamps, or of more than there is room for some, drawn by systematic sampling in proportion to the square
@@ -231,7 +228,7 @@ static void pair_some(BpPilotAim *aim) {
 /* Anywhere, from each triangle that emits. */
 static void pair_with_none(const BpScene *scene, BpPilotAim *aim) {
     for (uint32_t l = 0; l < aim->light_count; ++l)
-        if (!aim->lights[l].distant && is_triangle(scene, aim->lights[l].shape))
+        if (!aim->lights[l].distant && bp_pilot_is_triangle(scene, aim->lights[l].shape))
             aim->pairs[aim->pair_count++] =
                 (BpPilotPair){.light = l, .target = BP_PILOT_ANYWHERE, .share = 1};
 }
@@ -268,15 +265,15 @@ static BpStatus make_pairs(const BpScene *scene, BpPilotAim *aim, BpError *err) 
 }
 
 bool bp_pilot_is_sampled(const BpScene *scene, const BpPilotLight *light, uint32_t shape, uint32_t vertices) {
-    if (is_triangle(scene, shape) || vertices > bp_focuser_vertices(scene, shape)) return false;
+    if (bp_pilot_is_triangle(scene, shape) || vertices > bp_focuser_vertices(scene, shape)) return false;
     if (light->distant) return light->disc != SIZE_MAX && bp_focuses_disc(scene, shape, light->disc);
-    return !is_triangle(scene, light->shape) && bp_focuses_lamp(scene, shape, light->shape);
+    return !bp_pilot_is_triangle(scene, light->shape) && bp_focuses_lamp(scene, shape, light->shape);
 }
 
 BpStatus bp_pilot_aim(const BpScene *scene, BpPilotAim *aim, BpError *err) {
     *aim = (BpPilotAim){0};
     BpStatus status = find_lights(scene, aim, err);
-    if (status == BP_OK) status = find_targets(scene, aim, err);
+    if (status == BP_OK && aim->light_count > 0) status = find_targets(scene, aim, err);
     if (status == BP_OK && aim->light_count > 0) status = make_pairs(scene, aim, err);
     if (status != BP_OK) bp_pilot_aim_clear(aim);
     return status;
@@ -433,7 +430,7 @@ void bp_pilot_start(const BpScene *scene, const BpPilotAim *aim, size_t count, B
     const double radius =
         pair->target == BP_PILOT_ANYWHERE ? 0 : bp_pilot_ball(scene, aim->targets[pair->target], center);
     const double extent = light->distant ? start_distant(aim, light, center, radius, random, start)
-                          : is_triangle(scene, light->shape)
+                          : bp_pilot_is_triangle(scene, light->shape)
                               ? start_triangle(scene, light, center, radius, random, start)
                               : start_lamp(light, center, radius, random, start);
     start->measure = extent * light->share * pair->share / (pair->probability * (double)count);

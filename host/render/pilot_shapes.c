@@ -1,18 +1,13 @@
 /* pilot_shapes.c: see pilot_shapes.h. */
 #include "pilot_shapes.h"
 
-#include "scene/vector.h"
+#include "scene/triangle_area.h"
 
 #include <math.h>
 #include <string.h>
 
 double bp_pilot_area(const BpTriangle *triangle, double normal[3]) {
-    double u[3], v[3];
-    for (int a = 0; a < 3; ++a) {
-        u[a] = triangle->vertices[1][a] - triangle->vertices[0][a];
-        v[a] = triangle->vertices[2][a] - triangle->vertices[0][a];
-    }
-    bp_cross(u, v, normal);
+    bp_triangle_area(triangle, normal);
     return 0.5 * bp_normalize(normal);
 }
 
@@ -49,8 +44,8 @@ void bp_pilot_outward(const BpScene *scene, size_t shape, const double point[3],
 }
 
 double bp_pilot_index_inside(const BpScene *scene, size_t shape) {
-    return bp_pilot_triangle(scene, shape) != NULL ? bp_pilot_material(scene, shape)->refraction_index
-                                                   : bp_sphere_refraction_index(scene, shape);
+    return bp_pilot_is_triangle(scene, shape) ? bp_pilot_material(scene, shape)->refraction_index
+                                              : bp_sphere_refraction_index(scene, shape);
 }
 
 bool bp_pilot_is_specular(const BpScene *scene, size_t shape) {

@@ -8,9 +8,12 @@
 
 #include "scene/scene.h"
 
+static inline bool bp_pilot_is_triangle(const BpScene *scene, size_t shape) {
+    return shape >= scene->sphere_count;
+}
 /* NULL: it is a sphere. */
 static inline const BpTriangle *bp_pilot_triangle(const BpScene *scene, size_t shape) {
-    return shape < scene->sphere_count ? NULL : &scene->triangles[shape - scene->sphere_count];
+    return bp_pilot_is_triangle(scene, shape) ? &scene->triangles[shape - scene->sphere_count] : NULL;
 }
 
 static inline const BpMaterial *bp_pilot_material(const BpScene *scene, size_t shape) {
@@ -35,7 +38,7 @@ bool bp_pilot_is_specular(const BpScene *scene, size_t shape);
 
 /* Whose points count as neighbours: a sphere is its own, and all triangles are one. */
 static inline uint32_t bp_pilot_object(const BpScene *scene, uint32_t shape) {
-    return shape < scene->sphere_count ? shape : (uint32_t)scene->sphere_count;
+    return bp_pilot_is_triangle(scene, shape) ? (uint32_t)scene->sphere_count : shape;
 }
 
 /* By way of what light comes, as a place in a table: each sphere, then nothing at all, then the triangles of
@@ -47,7 +50,8 @@ static inline size_t bp_pilot_way_direct(const BpScene *scene) {
     return scene->sphere_count;
 }
 static inline size_t bp_pilot_way(const BpScene *scene, size_t shape) {
-    return shape < scene->sphere_count ? shape : scene->sphere_count + 1 + bp_shape_material(scene, shape);
+    return bp_pilot_is_triangle(scene, shape) ? scene->sphere_count + 1 + bp_shape_material(scene, shape)
+                                              : shape;
 }
 
 #endif

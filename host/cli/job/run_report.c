@@ -10,7 +10,6 @@
 #include "cli/output/report_json.h"
 #include "cli/output/result_file.h"
 #include "cli/terminal/page.h"
-#include "render/pilot.h"
 #include "scene/in_view.h"
 #include "unseen_text.h"
 
