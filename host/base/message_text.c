@@ -91,3 +91,12 @@ const char *bp_number_text(double value, char text[BP_NUMBER_TEXT_SIZE]) {
     }
     return text;
 }
+
+void bp_notes_add(char *notes, size_t size, const char *format, va_list arguments) {
+    char text[256];
+    vsnprintf(text, sizeof text, format, arguments);
+    if (strstr(notes, text) != NULL) return;
+    const size_t used = strlen(notes);
+    if (used + strlen(text) + 3 > size) return;
+    snprintf(notes + used, size - used, "%s%s", used > 0 ? "; " : "", text);
+}

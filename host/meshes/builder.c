@@ -18,15 +18,10 @@ enum { FIRST_CAPACITY = 64 };
 #define CORNERS_MAX ((size_t)4 * BP_MESH_COUNT_MAX)
 
 void mesh_note(BpMesh *mesh, const char *format, ...) {
-    char text[256];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    bp_notes_add(mesh->notes, sizeof mesh->notes, format, arguments);
     va_end(arguments);
-    if (strstr(mesh->notes, text) != NULL) return;
-    const size_t used = strlen(mesh->notes);
-    if (used + strlen(text) + 3 > sizeof mesh->notes) return;
-    snprintf(mesh->notes + used, sizeof mesh->notes - used, "%s%s", used > 0 ? "; " : "", text);
 }
 
 void mesh_builder_init(MeshBuilder *builder, Input *input, const char *path, BpMesh *mesh) {

@@ -36,15 +36,10 @@ void bp_particles_clear(BpParticles *particles) {
 }
 
 void bp_particles_note(BpParticles *particles, const char *format, ...) {
-    char text[160];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    bp_notes_add(particles->notes, sizeof particles->notes, format, arguments);
     va_end(arguments);
-    if (strstr(particles->notes, text) != NULL) return;
-    const size_t used = strlen(particles->notes);
-    if (used + strlen(text) + 3 > sizeof particles->notes) return;
-    snprintf(particles->notes + used, sizeof particles->notes - used, "%s%s", used > 0 ? "; " : "", text);
 }
 
 BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t column_count, BpError *err) {
