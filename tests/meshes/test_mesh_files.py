@@ -9,14 +9,13 @@ import json
 import math
 import os
 import resource
-import shutil
 import struct
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import samples
+from in_folder import FolderTest
 from samples import CORNERS, L_SHAPE, SIDES, TRIANGLES, obj, off, ply, stl_binary, stl_text
 
 READERS_PYTHON = os.environ.get("BALLPARK_READERS_PYTHON", sys.executable)
@@ -58,19 +57,7 @@ def volume_of(vertices, faces):
     return volume
 
 
-class MeshTest(unittest.TestCase):
-    maxDiff = None
-
-    def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="ballpark-meshes-")
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def write(self, name, content):
-        path = os.path.join(self.folder, name)
-        with open(path, "wb") as file:
-            file.write(content if isinstance(content, bytes) else content.encode())
-        return path
-
+class MeshTest(FolderTest):
     def ask_all(self, *arguments):
         """What is read from files, in little memory."""
         limit = lambda: SANITIZED or resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
@@ -99,14 +86,6 @@ class MeshTest(unittest.TestCase):
         if mesh is not None:
             self.assertEqual(found["mesh"], mesh)
         return found["error"]
-
-    def near(self, one, other, tolerance=1e-6):
-        self.assertEqual(len(one), len(other))
-        for a, b in zip(one, other):
-            if isinstance(a, (list, tuple)):
-                self.near(a, b, tolerance)
-            else:
-                self.assertLessEqual(abs(a - b), tolerance, (one, other))
 
     def is_cube(self, found, vertices=CORNERS):
         self.assertEqual(found["positions"], [list(map(float, v)) for v in vertices])

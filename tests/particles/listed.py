@@ -49,14 +49,6 @@ class ListTest(AnswersTest):
         for text in (name,) + says:
             self.assertIn(text, result.stderr)
 
-    def near(self, one, other, tolerance=1e-6):
-        self.assertEqual(len(one), len(other))
-        for a, b in zip(one, other):
-            if isinstance(a, (list, tuple)):
-                self.near(a, b, tolerance)
-            else:
-                self.assertLessEqual(abs(a - b), tolerance, (one, other))
-
     def ask(self, *arguments):
         """What independent_molecules.py finds; skips where its reader is missing."""
         result = subprocess.run([READERS_PYTHON, "-B", os.path.join(HERE, "independent_molecules.py"), *map(str, arguments)],

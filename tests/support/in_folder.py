@@ -9,7 +9,7 @@ class FolderTest(unittest.TestCase):
     maxDiff = None
 
     def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="ballpark-particles-")
+        self.folder = tempfile.mkdtemp(prefix="ballpark-files-")
         self.addCleanup(shutil.rmtree, self.folder)
 
     def write(self, name, content):
@@ -18,3 +18,12 @@ class FolderTest(unittest.TestCase):
         with open(path, "wb") as file:
             file.write(content if isinstance(content, bytes) else content.encode())
         return path
+
+    def near(self, one, other, tolerance=1e-6):
+        """Numbers, and lists of them."""
+        self.assertEqual(len(one), len(other))
+        for a, b in zip(one, other):
+            if isinstance(a, (list, tuple)):
+                self.near(a, b, tolerance)
+            else:
+                self.assertLessEqual(abs(a - b), tolerance, (one, other))
