@@ -1,6 +1,7 @@
 /* read_csv.c: tables of text: comma, semicolon, tab or blanks between the columns; see reader.h.
  *
- * Knows: which columns a particle is made of.   Does not know: how fields are written (csv_fields.h). */
+ * Knows: which columns a particle is made of, and which one makes frames.   Does not know: how fields are
+ * written (csv_fields.h). */
 #include "column_names.h"
 #include "csv_fields.h"
 #include "elements.h"
