@@ -1,6 +1,7 @@
 /* builder.c: see builder.h. */
 #include "builder.h"
 
+#include "base/color.h"
 #include "base/format.h"
 #include "base/message_text.h"
 #include "base/plural.h"
@@ -13,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIRST_CAPACITY = 64 };
+enum { FIRST_CAPACITY = 64, GREY = 152 /* that of particles, in sRGB */ };
 /* Of all polygons together. */
 #define CORNERS_MAX ((size_t)4 * BP_MESH_COUNT_MAX)
 
@@ -29,7 +30,8 @@ void mesh_builder_init(MeshBuilder *builder, Input *input, const char *path, BpM
 }
 
 void mesh_builder_clear(MeshBuilder *builder) {
-    free(builder->polygon_colors);
+    free(builder->vertex_colors.values);
+    free(builder->polygon_colors.values);
     free(builder->polygons);
     free(builder->corners);
     names_clear(&builder->names);
@@ -75,40 +77,46 @@ BpStatus mesh_add_vertex(MeshBuilder *builder, const double position[3], bool wi
     return BP_OK;
 }
 
-/* Adds the colour of number `number` to an array, in which all before it have colours, or else none. */
-static BpStatus add_color(MeshBuilder *builder, float (**colors)[3], size_t *capacity, ColorRange *range,
-                          const double color[3], size_t number, const char *of_what, bool with_line,
+static BpStatus put_color(const MeshBuilder *builder, MeshColors *colors, const double color[3],
                           BpError *err) {
+    BP_TRY(mesh_make_room(builder->input, (void **)&colors->values, &colors->capacity, colors->count,
+                          sizeof *colors->values, "colours", err));
+    for (int c = 0; c < 3; c++) colors->values[colors->count][c] = (float)color[c];
+    colors->count++;
+    if (isnan(color[0])) colors->missing++;
+    return BP_OK;
+}
+
+/* Says of all up to number `count` that have no colour yet that they have none. */
+static BpStatus put_missing(const MeshBuilder *builder, MeshColors *colors, size_t count, BpError *err) {
+    static const double none[3] = {NAN, NAN, NAN};
+    while (colors->count < count) BP_TRY(put_color(builder, colors, none, err));
+    return BP_OK;
+}
+
+static BpStatus add_color(MeshBuilder *builder, MeshColors *colors, const double color[3], size_t number,
+                          const char *of_what, bool with_line, BpError *err) {
     int channel = 0;
     char found[BP_NUMBER_TEXT_SIZE];
-    if (!color_range_take(range, color, number, with_line ? builder->input->line : 0, &channel))
+    if (isnan(color[0]) || isnan(color[1]) || isnan(color[2]))
+        return put_missing(builder, colors, number + 1, err);
+    if (!color_range_take(&colors->range, color, number, with_line ? builder->input->line : 0, &channel))
         return input_fail(builder->input, with_line, err,
                           "%s %zu (from %" PRIu32 "): %s: found %s, expected %s", of_what,
                           number + builder->first_index, builder->first_index, bp_color_channels[channel],
-                          isnan(color[channel]) ? "no number" : bp_number_text(color[channel], found),
-                          color_range_expected(range));
-    BP_TRY(
-        mesh_make_room(builder->input, (void **)colors, capacity, number, sizeof **colors, "colours", err));
-    for (int c = 0; c < 3; c++) (*colors)[number][c] = (float)color[c];
-    return BP_OK;
+                          bp_number_text(color[channel], found), color_range_expected(&colors->range));
+    BP_TRY(put_missing(builder, colors, number, err));
+    return put_color(builder, colors, color, err);
 }
 
 BpStatus mesh_color_vertex(MeshBuilder *builder, const double color[3], bool with_line, BpError *err) {
-    BpMesh *const mesh = builder->mesh;
-    /* Where a vertex before it has none, all colours will be left out. */
-    if (builder->colored_vertices + 1 == mesh->vertex_count)
-        BP_TRY(add_color(builder, &mesh->vertex_colors, &builder->vertex_color_capacity,
-                         &builder->vertex_range, color, mesh->vertex_count - 1, "vertex", with_line, err));
-    builder->colored_vertices++;
-    return BP_OK;
+    return add_color(builder, &builder->vertex_colors, color, builder->mesh->vertex_count - 1, "vertex",
+                     with_line, err);
 }
 
 BpStatus mesh_color_polygon(MeshBuilder *builder, const double color[3], bool with_line, BpError *err) {
-    if (builder->colored_polygons + 1 == builder->polygon_count)
-        BP_TRY(add_color(builder, &builder->polygon_colors, &builder->polygon_color_capacity,
-                         &builder->face_range, color, builder->polygon_count - 1, "face", with_line, err));
-    builder->colored_polygons++;
-    return BP_OK;
+    return add_color(builder, &builder->polygon_colors, color, builder->polygon_count - 1, "face", with_line,
+                     err);
 }
 
 BpStatus mesh_add_corner(MeshBuilder *builder, uint32_t vertex, BpError *err) {
@@ -164,6 +172,7 @@ typedef struct Finish {
     PolygonCutter cutter;
     size_t face_capacity, material_capacity, color_capacity;
     bool has_materials, has_colors;
+    size_t crossing, first_crossing; /* polygons that cross themselves */
 } Finish;
 
 static BpStatus fail_polygon(const Finish *f, size_t number, BpError *err, const char *text) {
@@ -186,7 +195,8 @@ static BpStatus add_face(Finish *f, size_t number, const uint32_t *triangle, BpE
     }
     if (f->has_colors) {
         BP_TRY(MAKE_ROOM(b, mesh->face_colors, f->color_capacity, mesh->face_count, "faces", err));
-        memcpy(mesh->face_colors[mesh->face_count], b->polygon_colors[number], sizeof *mesh->face_colors);
+        memcpy(mesh->face_colors[mesh->face_count], b->polygon_colors.values[number],
+               sizeof *mesh->face_colors);
     }
     BP_TRY(MAKE_ROOM(b, mesh->faces, f->face_capacity, mesh->face_count, "faces", err));
     memcpy(mesh->faces[mesh->face_count++], triangle, sizeof *mesh->faces);
@@ -210,9 +220,9 @@ static BpStatus cut(Finish *f, size_t number, const uint32_t *corners, BpError *
     case POLYGON_CUT:
         break;
     case POLYGON_CROSSES:
-        snprintf(text, sizeof text,
-                 "crosses itself, expected a polygon that bounds one area: cut it into triangles");
-        return fail_polygon(f, number, err, text);
+        if (f->crossing++ == 0) f->first_crossing = number;
+        polygon_fan(&f->cutter, (const double(*)[3])mesh->positions, corners, count);
+        break;
     case POLYGON_TOO_LARGE:
         snprintf(text, sizeof text, "has %zu corners and is not convex, expected at most %d: cut it up",
                  count, POLYGON_CORNERS_MAX);
@@ -240,20 +250,26 @@ static BpStatus cut_all(Finish *f, BpError *err) {
 
 /* ---- colours ------------------------------------------------------------------------------------------ */
 
-/* Whether all of them have a colour; where only some have, a note reports it. */
-static bool are_all_colored(BpMesh *mesh, size_t colored, size_t count, const char *of_what) {
-    if (colored > 0 && colored < count)
-        mesh_note(mesh, "colours left out, since %zu of %zu %s have none", count - colored, count, of_what);
-    return colored > 0 && colored == count;
-}
-
-static BpStatus make_linear(const MeshBuilder *builder, const ColorRange *range, const char *what,
-                            float (*colors)[3], size_t count, BpError *err) {
-    const double scale = color_range_scale(range);
-    if (scale == 0) return color_range_fail(range, what, builder->input->name, err);
-    const char *const note = color_range_note(range);
+/* Makes the colours of all `count` linear, and those that are missing grey. If none has a colour, there are
+ * no colours. */
+static BpStatus finish_colors(const MeshBuilder *builder, MeshColors *colors, size_t count, const char *one,
+                              const char *several, BpError *err) {
+    const double scale = color_range_scale(&colors->range);
+    char missing[32], all[32];
+    if (colors->count == colors->missing) return BP_OK;
+    BP_TRY(put_missing(builder, colors, count, err));
+    if (scale == 0) return color_range_fail(&colors->range, one, builder->input->name, err);
+    const char *const note = color_range_note(&colors->range);
     if (note != NULL) mesh_note(builder->mesh, "%s", note);
-    color_range_make_linear(scale, colors, count);
+    color_range_make_linear(scale, colors->values, count);
+    if (colors->missing == 0) return BP_OK;
+    mesh_note(builder->mesh, "grey for lack of a colour: %s of %s %s",
+              bp_format_whole(colors->missing, missing, sizeof missing),
+              bp_format_whole(count, all, sizeof all), several);
+    for (size_t i = 0; i < count; i++) {
+        float *const color = colors->values[i];
+        if (isnan(color[0])) color[0] = color[1] = color[2] = (float)bp_linear_from_srgb(GREY / 255.0);
+    }
     return BP_OK;
 }
 
@@ -261,17 +277,13 @@ BpStatus mesh_finish(MeshBuilder *builder, BpError *err) {
     BpMesh *const mesh = builder->mesh;
     char number[32];
     Finish finish = {.builder = builder, .has_materials = mesh->material_count > 0};
-    if (!are_all_colored(mesh, builder->colored_vertices, mesh->vertex_count, "vertices")) {
-        free(mesh->vertex_colors);
-        mesh->vertex_colors = NULL;
-    } else {
-        BP_TRY(make_linear(builder, &builder->vertex_range, "vertex", mesh->vertex_colors, mesh->vertex_count,
-                           err));
+    BP_TRY(finish_colors(builder, &builder->vertex_colors, mesh->vertex_count, "vertex", "vertices", err));
+    BP_TRY(finish_colors(builder, &builder->polygon_colors, builder->polygon_count, "face", "faces", err));
+    finish.has_colors = builder->polygon_colors.count > builder->polygon_colors.missing;
+    if (builder->vertex_colors.count > builder->vertex_colors.missing) {
+        mesh->vertex_colors = builder->vertex_colors.values;
+        builder->vertex_colors.values = NULL;
     }
-    finish.has_colors = are_all_colored(mesh, builder->colored_polygons, builder->polygon_count, "faces");
-    if (finish.has_colors)
-        BP_TRY(make_linear(builder, &builder->face_range, "face", builder->polygon_colors,
-                           builder->polygon_count, err));
     const BpStatus status = cut_all(&finish, err);
     polygon_clear(&finish.cutter);
     if (status != BP_OK) return status;
@@ -282,5 +294,12 @@ BpStatus mesh_finish(MeshBuilder *builder, BpError *err) {
         mesh_note(mesh, "%s triangle%s without area left out",
                   bp_format_whole(mesh->dropped_degenerate, number, sizeof number),
                   bp_plural(mesh->dropped_degenerate));
+    if (finish.crossing > 0)
+        mesh_note(mesh, "%s face%s cut from %s first corner although %s: face %zu (from %" PRIu32 ")%s",
+                  bp_format_whole(finish.crossing, number, sizeof number), bp_plural(finish.crossing),
+                  finish.crossing == 1 ? "its" : "their",
+                  finish.crossing == 1 ? "it crosses itself" : "they cross themselves",
+                  finish.first_crossing + builder->first_index, builder->first_index,
+                  finish.crossing == 1 ? "" : " is the first");
     return BP_OK;
 }

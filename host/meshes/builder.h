@@ -18,17 +18,22 @@ typedef struct MeshPolygon {
     uint32_t line;                   /* 0: it stands in no line */
 } MeshPolygon;
 
+/* Colours of vertices or of polygons. Begins as zero. */
+typedef struct MeshColors {
+    float (*values)[3]; /* as in the file; red is NaN where there is none */
+    size_t count, capacity, missing;
+    ColorRange range;
+} MeshColors;
+
 typedef struct MeshBuilder {
     Input *input;
     BpMesh *mesh;
     const char *path;     /* of the file; others are sought beside it */
     uint32_t first_index; /* which number the file gives to its first vertex: 0, or 1 in OBJ */
     size_t vertex_capacity;
-    ColorRange vertex_range, face_range;
-    size_t colored_vertices, colored_polygons;
-    float (*polygon_colors)[3]; /* NULL until one has a colour; red is NaN where it has none */
+    MeshColors vertex_colors, polygon_colors;
     MeshPolygon *polygons;
-    size_t polygon_count, polygon_capacity, polygon_color_capacity, vertex_color_capacity;
+    size_t polygon_count, polygon_capacity;
     uint32_t *corners; /* of all polygons, one after the other */
     size_t corner_count, corner_capacity,
         polygon_begin; /* where the corners of the polygon being made begin */
@@ -45,7 +50,8 @@ BpStatus mesh_make_room(const Input *input, void **array, size_t *capacity, size
 
 /* Adds a vertex. Fails on what is not finite or too large. with_line: the error names the line last taken. */
 BpStatus mesh_add_vertex(MeshBuilder *builder, const double position[3], bool with_line, BpError *err);
-/* The colour of the vertex, or of the polygon, that was added last: numbers of any scale (color_range.h). */
+/* The colour of the vertex, or of the polygon, that was added last: numbers of any scale (color_range.h), or
+ * NaN for a colour that is missing. */
 BpStatus mesh_color_vertex(MeshBuilder *builder, const double color[3], bool with_line, BpError *err);
 BpStatus mesh_color_polygon(MeshBuilder *builder, const double color[3], bool with_line, BpError *err);
 /* Adds a corner to the polygon that is being made: a vertex, counted from 0. */
@@ -55,8 +61,8 @@ BpStatus mesh_end_polygon(MeshBuilder *builder, uint32_t material, bool with_lin
 /* The number of the material of that name, which is added where it is new; "" has BP_MESH_NO_MATERIAL. */
 BpStatus mesh_find_material(MeshBuilder *builder, const char *name, uint32_t *number, BpError *err);
 
-/* After all of a file: cuts the polygons, and makes the colours linear. Fails on vertices that do not exist,
- * on polygons that cannot be cut, and if there is no triangle. */
+/* After all of a file: cuts the polygons, and makes the colours linear and those that are missing grey. Fails
+ * on vertices that do not exist, on polygons that cannot be cut, and if there is no triangle. */
 BpStatus mesh_finish(MeshBuilder *builder, BpError *err);
 
 /* Adds to the notes what is not there yet. */

@@ -40,8 +40,8 @@ typedef struct BpMesh {
     uint32_t *face_material; /* Optional; an index into materials, or BP_MESH_NO_MATERIAL */
     BpMeshMaterial *materials;
     size_t material_count;
-    /* Optional: all vertices, or all faces, have one. Linear red, green and blue in [0, 1]: bytes of files
-     * are decoded as sRGB. */
+    /* Optional: all vertices, or all faces, have one; grey where the file lacks it. Linear red, green and
+     * blue in [0, 1]: bytes of files are decoded as sRGB. */
     float (*vertex_colors)[3], (*face_colors)[3];
     size_t polygons;           /* faces of the file with more than three corners, which were cut */
     size_t dropped_degenerate; /* triangles, whole or of polygons, without area or with a corner twice */

@@ -24,6 +24,7 @@ typedef struct PolygonBox {
 
 typedef struct Clip {
     PolygonCutter *cutter;
+    const double (*positions)[3];
     Corner *corners;
     uint32_t left;                     /* corners that are not gone */
     uint32_t *blockers, blocker_count; /* corners with a turn of 0 or less: only these can lie in an ear */
@@ -74,6 +75,16 @@ static void put(PolygonCutter *cutter, uint32_t a, uint32_t b, uint32_t c) {
     triangle[2] = c;
 }
 
+void polygon_fan(PolygonCutter *cutter, const double (*positions)[3], const uint32_t *vertices,
+                 size_t count) {
+    const uint32_t a = vertices[0];
+    cutter->triangle_count = 0;
+    for (size_t n = 1; n + 1 < count; n++) {
+        const uint32_t b = vertices[n], c = vertices[n + 1];
+        if (!polygon_is_flat(positions[a], positions[b], positions[c])) put(cutter, a, b, c);
+    }
+}
+
 /* ---- the plane ---------------------------------------------------------------------------------------- */
 
 /* The polygon's normal, twice its area long (Newell's sums, about the first corner), and a bound of its
@@ -104,6 +115,16 @@ static bool is_on_one_line(const double (*positions)[3], const uint32_t *vertice
         if (other != NULL && !polygon_is_flat(first, other, p)) return false;
     }
     return true;
+}
+
+/* The axes, that of the normal's largest part first. */
+static void order_axes(const double normal[3], int axes[3]) {
+    for (int a = 0; a < 3; a++) {
+        int rank = 0;
+        for (int b = 0; b < 3; b++)
+            rank += fabs(normal[b]) > fabs(normal[a]) || (b < a && fabs(normal[b]) == fabs(normal[a]));
+        axes[rank] = a;
+    }
 }
 
 /* Lays the corners into the plane of the other two axes. `turned`: seen from the side of lower coordinates.
@@ -229,11 +250,21 @@ static bool is_spike(const Clip *clip, uint32_t n) {
            is_below(a, corner->at) == is_below(c, corner->at);
 }
 
-/* Cuts off the spikes at a corner and at what becomes of it: they have no area, and what they leave is looked
- * at again. */
-static void drop_spikes(Clip *clip, uint32_t n) {
+/* Puts the triangle at a corner if it has an area in space, though it may have none as it is laid out. */
+static void put_unless_flat(Clip *clip, uint32_t n) {
+    const Corner *const corners = clip->corners;
+    const uint32_t previous = corners[n].previous, next = corners[n].next;
+    if (!polygon_is_flat(clip->positions[corners[previous].vertex], clip->positions[corners[n].vertex],
+                         clip->positions[corners[next].vertex]))
+        put(clip->cutter, previous, n, next);
+}
+
+/* Cuts off the spikes at a corner and at what becomes of it: they cover nothing of the plane, and what they
+ * leave is looked at again. */
+static void cut_spikes(Clip *clip, uint32_t n) {
     while (clip->left > 3 && is_spike(clip, n)) {
         const uint32_t previous = clip->corners[n].previous, next = clip->corners[n].next;
+        put_unless_flat(clip, n);
         unlink_corner(clip, n);
         n = is_spike(clip, previous) ? previous : next;
     }
@@ -268,7 +299,7 @@ static bool clip_ears(Clip *clip, size_t count) {
         set_turn(clip, n);
     }
     for (uint32_t n = 0; n < count; n++)
-        if (!corners[n].is_gone) drop_spikes(clip, n);
+        if (!corners[n].is_gone) cut_spikes(clip, n);
     push_all(clip, count);
     while (clip->left > 3) {
         const uint32_t n = take_ear(clip);
@@ -281,12 +312,12 @@ static bool clip_ears(Clip *clip, size_t count) {
         const uint32_t previous = corners[n].previous, next = corners[n].next;
         put(clip->cutter, previous, n, next);
         unlink_corner(clip, n);
-        drop_spikes(clip, previous);
-        if (!corners[next].is_gone) drop_spikes(clip, next);
+        cut_spikes(clip, previous);
+        if (!corners[next].is_gone) cut_spikes(clip, next);
     }
     uint32_t n = 0;
     while (corners[n].is_gone) n++;
-    if (corners[n].turn > 0) put(clip->cutter, corners[n].previous, n, corners[n].next);
+    if (corners[n].turn >= 0) put_unless_flat(clip, n);
     return corners[n].turn >= 0;
 }
 
@@ -308,22 +339,25 @@ static bool is_beyond(const Corner *corners, const uint32_t one[3], const uint32
     return false;
 }
 
-/* All triangles turn to the left, so they cover each point as often as the outline goes around it. They
- * overlap exactly where it does so twice. */
+/* All triangles that have an area here turn to the left, so they cover each point as often as the outline
+ * goes around it. They overlap exactly where it does so twice. */
 static bool is_covered_once(const PolygonCutter *cutter) {
     const Corner *const corners = cutter->corners;
     Box *const boxes = cutter->boxes;
-    const size_t count = cutter->triangle_count;
-    for (size_t t = 0; t < count; t++) {
-        Box *const box = &boxes[t];
-        memcpy(box->triangle, cutter->triangles[t], sizeof box->triangle);
+    size_t count = 0;
+    for (size_t t = 0; t < cutter->triangle_count; t++) {
+        const uint32_t *const triangle = cutter->triangles[t];
+        const double *const a = corners[triangle[0]].at, *const b = corners[triangle[1]].at;
+        const double *const c = corners[triangle[2]].at;
+        if (orient(a, b, c) == 0) continue;
+        Box *const box = &boxes[count++];
+        memcpy(box->triangle, triangle, sizeof box->triangle);
         for (int i = 0; i < 2; i++) {
-            const double a = corners[box->triangle[0]].at[i], b = corners[box->triangle[1]].at[i];
-            const double c = corners[box->triangle[2]].at[i];
-            box->low[i] = fmin(a, fmin(b, c));
-            box->high[i] = fmax(a, fmax(b, c));
+            box->low[i] = fmin(a[i], fmin(b[i], c[i]));
+            box->high[i] = fmax(a[i], fmax(b[i], c[i]));
         }
     }
+    if (count == 0) return false;
     qsort(boxes, count, sizeof *boxes, by_low);
     for (size_t s = 0; s < count; s++) {
         for (size_t t = s + 1; t < count && boxes[t].low[0] < boxes[s].high[0]; t++) {
@@ -339,9 +373,10 @@ static bool is_covered_once(const PolygonCutter *cutter) {
 /* ---- the whole ---------------------------------------------------------------------------------------- */
 
 /* Cuts the polygon as it is laid out; false: it cannot be done. */
-static bool cut_laid(PolygonCutter *cutter, size_t count) {
+static bool cut_laid(PolygonCutter *cutter, const double (*positions)[3], size_t count) {
     const Corner *const corners = cutter->corners;
     Clip clip = {.cutter = cutter,
+                 .positions = positions,
                  .corners = cutter->corners,
                  .left = (uint32_t)count,
                  .blockers = cutter->blockers,
@@ -349,9 +384,7 @@ static bool cut_laid(PolygonCutter *cutter, size_t count) {
                  .size = count,
                  .work_max = 16 * (uint64_t)count * count};
     cutter->triangle_count = 0;
-    if (!clip_ears(&clip, count)) return false;
-    /* Two triangles on both sides of a diagonal cannot overlap. */
-    if (count > 4 && !is_covered_once(cutter)) return false;
+    if (!clip_ears(&clip, count) || !is_covered_once(cutter)) return false;
     for (size_t t = 0; t < cutter->triangle_count; t++)
         for (int i = 0; i < 3; i++) cutter->triangles[t][i] = corners[cutter->triangles[t][i]].vertex;
     return true;
@@ -369,20 +402,25 @@ PolygonResult polygon_cut(PolygonCutter *cutter, const double (*positions)[3], c
         return POLYGON_CUT;
     }
     const double error = find_normal(positions, vertices, count, normal);
-    int axis = fabs(normal[1]) > fabs(normal[0]) ? 1 : 0;
-    if (fabs(normal[2]) > fabs(normal[axis])) axis = 2;
-    lay(cutter->corners, positions, vertices, count, axis, normal[axis] < 0);
+    int axes[3];
+    order_axes(normal, axes);
+    lay(cutter->corners, positions, vertices, count, axes[0], normal[axes[0]] < 0);
     if (is_convex(cutter->corners, count)) {
         for (size_t n = 1; n + 1 < count; n++) put(cutter, vertices[0], vertices[n], vertices[n + 1]);
         return POLYGON_CUT;
     }
     if (count > POLYGON_CORNERS_MAX) return POLYGON_TOO_LARGE;
-    if (fabs(normal[axis]) > error) return cut_laid(cutter, count) ? POLYGON_CUT : POLYGON_CROSSES;
+    /* Corners that do not lie in one plane may cross in one view and not in another. */
+    for (int i = 0; i < 3 && fabs(normal[axes[i]]) > error; i++) {
+        lay(cutter->corners, positions, vertices, count, axes[i], normal[axes[i]] < 0);
+        if (cut_laid(cutter, positions, count)) return POLYGON_CUT;
+    }
+    if (fabs(normal[axes[0]]) > error) return POLYGON_CROSSES;
     /* Its normal is lost in rounding: it has no area, or nearly none. */
     if (is_on_one_line(positions, vertices, count)) return POLYGON_CUT;
     for (int i = 0; i < 6; i++) {
         lay(cutter->corners, positions, vertices, count, i / 2, i % 2 == 1);
-        if (cut_laid(cutter, count) && cutter->triangle_count > 0) return POLYGON_CUT;
+        if (cut_laid(cutter, positions, count)) return POLYGON_CUT;
     }
     return POLYGON_CROSSES;
 }

@@ -64,7 +64,8 @@ static void find_face_colors(Ply *ply) {
         color[0] = -1;
         return;
     }
-    ply->builder->face_range = (ColorRange){.bytes = type == PLY_UINT8, .ambiguous = ply_is_integer(type)};
+    ply->builder->polygon_colors.range =
+        (ColorRange){.bytes = type == PLY_UINT8, .ambiguous = ply_is_integer(type)};
 }
 
 static BpStatus find_faces(Ply *ply, BpError *err) {
@@ -133,7 +134,7 @@ static BpStatus read_all(Ply *ply, BpError *err) {
     BP_TRY(find_corners(ply, err));
     ply->input->line = line;
     find_face_colors(ply);
-    if (ply->header.color[0] >= 0) ply->builder->vertex_range = ply_color_range(&ply->header);
+    if (ply->header.color[0] >= 0) ply->builder->vertex_colors.range = ply_color_range(&ply->header);
     for (size_t i = 0; i < ply->header.element_count; i++) {
         if (i == ply->header.vertex)
             BP_TRY(read_vertices(ply, err));

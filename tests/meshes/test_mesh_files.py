@@ -184,9 +184,16 @@ class Obj(MeshTest):
         self.near(found["vertex_colors"], [[1, 0, 0], [0, 0.5, 0], [0, 0, 1]])
         found = self.of("a.obj", "v 0 0 0 255 0 0\nv 1 0 0 0 128 0\nv 0 1 0 0 0 9\nf 1 2 3\n")
         self.near(found["vertex_colors"], [[1, 0, 0], [0, linear(128 / 255), 0], [0, 0, linear(9 / 255)]])
-        found = self.of("a.obj", "v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0 0 0 1\nf 1 2 3\n")
+        grey = [linear(152 / 255)] * 3
+        for second in ("", " nan nan nan", " 0 NaN 0"):
+            found = self.of("a.obj", f"v 0 0 0 1 0 0\nv 1 0 0{second}\nv 0 1 0 0 0 1\nf 1 2 3\n")
+            self.near(found["vertex_colors"], [[1, 0, 0], grey, [0, 0, 1]])
+            self.assertIn("grey for lack of a colour: 1 of 3 vertices", found["notes"])
+        found = self.of("a.obj", "v 0 0 0\nv 1 0 0 255 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.near(found["vertex_colors"], [grey, [1, 0, 0], grey])
+        found = self.of("a.obj", "v 0 0 0 nan nan nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         self.assertNotIn("vertex_colors", found)
-        self.assertIn("1 of 3 vertices have none", found["notes"])
+        self.assertEqual(found["notes"], "")
         self.refuse("a.obj", "v 1 2\n", "found 2 numbers behind v", line=1)
         self.refuse("a.obj", "v 1 2 x\n", "\"x\"", line=1)
         self.refuse("a.obj", "v 1 nan 0\nf 1 1 1\n", "vertex 1 (from 1)", "no number for y", line=1)
@@ -317,8 +324,8 @@ class Off(MeshTest):
         for behind in (" 0.5 0 1", " 0.5 0 1 0.5"):
             self.near(self.of("a.off", off(behind_face=behind))["face_colors"], [[0.5, 0, 1]] * 12)
         found = self.of("a.off", off() .replace("4 0 1 3 2", "4 0 1 3 2 255 0 0"))
-        self.assertNotIn("face_colors", found)
-        self.assertIn("5 of 6 faces have none", found["notes"])
+        self.near(found["face_colors"], [[1, 0, 0]] * 2 + [[linear(152 / 255)] * 3] * 10)
+        self.assertIn("grey for lack of a colour: 5 of 6 faces", found["notes"])
 
     def test_hostile(self):
         text = off()
@@ -380,11 +387,31 @@ class Shapes(MeshTest):
                 self.assertAlmostEqual(volume_of(found["positions"], found["faces"]), 14, 12)
 
     def test_crossing(self):
-        """A polygon that crosses itself is refused with its line."""
+        """A polygon that crosses itself is cut from its first corner, and a note names it."""
         bow = [(0, 0, 0), (1, 1, 0), (1, 0, 0), (0, 1, 0)]
-        for (name, content), line in zip(self.write_all(bow, [(0, 2, 1), (0, 1, 2, 3)]), (16, 0, 0, 6, 6, 8)):
-            says = self.refuse(name, content, "crosses itself", "cut it into triangles", line=line)
-            self.assertIn("face 2 (from 1)" if name.endswith("obj") else "face 1 (from 0)", says)
+        for name, content in self.write_all(bow, [(0, 2, 1), (0, 1, 2, 3), (3, 2, 1, 0)]):
+            found = self.of(name, content)
+            self.assertEqual(found["faces"], [[0, 2, 1], [0, 1, 2], [0, 2, 3], [3, 2, 1], [3, 1, 0]])
+            first = "2 (from 1)" if name.endswith("obj") else "1 (from 0)"
+            self.assertIn(f"2 faces cut from their first corner although they cross themselves: face {first} is the first",
+                          found["notes"])
+        found = self.of("a.obj", obj(bow, [(0, 1, 2, 3)]))
+        self.assertIn("1 face cut from its first corner although it crosses itself: face 1 (from 1)", found["notes"])
+
+    def test_not_flat(self):
+        """Corners in no plane: what covers nothing in one view may have an area in space, and is kept."""
+        roof = [(-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1), (0, 1, -1)]  # the last lies above an edge of the square
+        for first in range(5):
+            found = self.of("a.obj", obj(roof, [tuple((first + i) % 5 for i in range(5))]))
+            self.assertEqual((found["triangles"], found["dropped"], found["notes"]), (3, 0, ""))
+            self.assertAlmostEqual(area_of([(x, 0, z) for x, _, z in roof], found["faces"]), 3, 12)
+            sides = [side for a, b, c in map(tuple, found["faces"]) for side in ((a, b), (b, c), (c, a))]
+            outline = [side for side in sides if side[::-1] not in sides]
+            self.assertEqual(sorted(outline), [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0)])
+        fold = [(11.424191, 227.11412, 46.411819), (11.773045, 227.911987, 46.302418), (11.707062, 227.626556, 46.342155),
+                (11.41707, 226.8853, 46.168762)]  # of a model: it crosses itself along x, and along y it does not
+        found = self.of("a.obj", obj(fold, [(0, 1, 2, 3)]))
+        self.assertEqual((found["triangles"], found["notes"]), (2, ""))
 
     def test_edges(self):
         """The first bad edge, by faces, and what is wrong with it."""
@@ -484,7 +511,7 @@ class Hostile(MeshTest):
             self.refuse(name + ".gz", gzip.compress((start + block * megabytes).encode(), 1))
 
 
-REFUSED = {"box_UTF16BE.obj": "UTF-16", "box_longline.obj": "crosses itself", "number_formats.obj": "3.1+e2", "point_cloud.obj": "no faces",
+REFUSED = {"box_UTF16BE.obj": "UTF-16", "number_formats.obj": "3.1+e2", "point_cloud.obj": "no faces",
            "testline.obj": "no faces", "testpoints.obj": "no faces", "invalid.off": "face 1", "Wuson.ply": "\"Created\"",
            "issue623.ply": "no faces", "points.ply": "no faces", "pond.0.ply": "no faces", "OutOfMemory.off": "vertex 8",
            "empty.obj": "no faces", "empty.off": "end of the file", "empty.ply": "end of the file", "malformed.obj": "vertex 0"}
@@ -541,6 +568,9 @@ class Independent(Models):
         for path in paths:
             name, found, their = os.path.basename(path), self.ask("--whole", path), read[path]
             # trimesh leaves out one triangle of a face that has a vertex twice.
+            if their is None:  # without the package charset_normalizer, it reads no text of unknown encoding
+                self.assertEqual(name, "regr01.obj")
+                continue
             self.assertEqual(found["triangles"] + found["dropped"] - (name == "malformed2.obj"), their["triangles"], name)
             places = sorted({tuple(round(c, 5) + 0.0 for c in found["positions"][v]) for face in found["faces"] for v in face})
             self.near(places, their["places"], 2e-5 * max(1, max(abs(c) for place in places for c in place)))
