@@ -1,7 +1,7 @@
 /* read_ply.c: PLY files with faces; see reader.h.
  *
- * Knows: which properties are corners and colours.   Does not know: how headers and rows are written
- * (particles/ply_rows.h), how polygons are cut. */
+ * Knows: which properties are corners and colours, strips of triangles.   Does not know: how headers and rows
+ * are written (particles/ply_rows.h), how polygons are cut. */
 #include "reader.h"
 
 #include "particles/column_names.h"
@@ -76,7 +76,8 @@ static BpStatus find_faces(Ply *ply, BpError *err) {
         found++;
     }
     if (found > 1)
-        return input_fail(ply->input, true, err, "found the element face a second time, expected it once");
+        return input_fail(ply->input, true, err,
+                          "found the faces (face or tristrips) a second time, expected them once");
     if (found == 0 || ply->header.elements[ply->face].count == 0)
         return input_fail(
             ply->input, true, err,
@@ -98,32 +99,84 @@ static BpStatus read_vertices(Ply *ply, BpError *err) {
     return BP_OK;
 }
 
-static BpStatus add_corners(const Ply *ply, uint64_t row, BpError *err) {
-    const uint64_t vertices = ply->header.elements[ply->header.vertex].count;
+static BpStatus fail_corner(const Ply *ply, uint64_t row, double vertex, BpError *err) {
     char found[BP_NUMBER_TEXT_SIZE];
+    return input_fail(ply->input, ply->with_line, err,
+                      "%s %" PRIu64 " (from 0): found vertex %s, expected one of %" PRIu64
+                      " vertices, counted from 0",
+                      ply->header.elements[ply->face].strips ? "strip" : "face", row,
+                      isnan(vertex) ? "nan" : bp_number_text(vertex, found),
+                      ply->header.elements[ply->header.vertex].count);
+}
+
+static bool is_vertex(const Ply *ply, double vertex) {
+    const uint64_t vertices = ply->header.elements[ply->header.vertex].count;
+    return vertex >= 0 && vertex < (double)vertices && vertex < UINT32_MAX && vertex == floor(vertex);
+}
+
+static BpStatus end_polygon(const Ply *ply, BpError *err) {
+    double color[3];
+    BP_TRY(mesh_end_polygon(ply->builder, BP_MESH_NO_MATERIAL, ply->with_line, err));
+    if (ply->face_color[0] < 0) return BP_OK;
+    for (int c = 0; c < 3; c++) color[c] = ply->values[ply->face_color[c]];
+    return mesh_color_polygon(ply->builder, color, ply->with_line, err);
+}
+
+static BpStatus add_face(const Ply *ply, uint64_t row, BpError *err) {
     for (size_t i = 0; i < ply->list.count; i++) {
         const double vertex = ply->list.items[i];
-        if (!(vertex >= 0 && vertex < (double)vertices && vertex < UINT32_MAX && vertex == floor(vertex)))
-            return input_fail(ply->input, ply->with_line, err,
-                              "face %" PRIu64 " (from 0): found vertex %s, expected one of %" PRIu64
-                              " vertices, counted from 0",
-                              row, isnan(vertex) ? "nan" : bp_number_text(vertex, found), vertices);
+        if (!is_vertex(ply, vertex)) return fail_corner(ply, row, vertex, err);
         BP_TRY(mesh_add_corner(ply->builder, (uint32_t)vertex, err));
+    }
+    return end_polygon(ply, err);
+}
+
+/* A strip has a triangle for each vertex from its third; every second one runs the other way around. -1 ends
+ * a strip, and another begins behind it. Triangles with a vertex twice only lead from one part to the next.
+ */
+static BpStatus add_strip(const Ply *ply, uint64_t row, BpError *err) {
+    const double *const items = ply->list.items;
+    size_t begin = 0;
+    for (size_t i = 0; i < ply->list.count; i++) {
+        if (items[i] == -1) {
+            begin = i + 1;
+            continue;
+        }
+        if (!is_vertex(ply, items[i])) return fail_corner(ply, row, items[i], err);
+        if (i < begin + 2) continue;
+        const bool is_odd = (i - begin) % 2 == 1;
+        const double corners[3] = {items[i - 2 + is_odd], items[i - 1 - is_odd], items[i]};
+        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+        for (int c = 0; c < 3; c++) BP_TRY(mesh_add_corner(ply->builder, (uint32_t)corners[c], err));
+        BP_TRY(end_polygon(ply, err));
     }
     return BP_OK;
 }
 
 static BpStatus read_faces(Ply *ply, BpError *err) {
-    double color[3];
-    for (uint64_t row = 0; row < ply->header.elements[ply->face].count; row++) {
+    const PlyElement *const element = &ply->header.elements[ply->face];
+    for (uint64_t row = 0; row < element->count; row++) {
         BP_TRY(ply_take_row(ply->input, &ply->header, ply->face, row, ply->values, &ply->list, err));
-        BP_TRY(add_corners(ply, row, err));
-        BP_TRY(mesh_end_polygon(ply->builder, BP_MESH_NO_MATERIAL, ply->with_line, err));
-        if (ply->face_color[0] < 0) continue;
-        for (int c = 0; c < 3; c++) color[c] = ply->values[ply->face_color[c]];
-        BP_TRY(mesh_color_polygon(ply->builder, color, ply->with_line, err));
+        BP_TRY(element->strips ? add_strip(ply, row, err) : add_face(ply, row, err));
     }
     return BP_OK;
+}
+
+/* Notes what belongs to surfaces and is not read. */
+static void note_left_out(const Ply *ply) {
+    BpMesh *const mesh = ply->builder->mesh;
+    bool has_texture = false, has_material = false;
+    for (size_t i = 0; i < ply->header.elements[ply->face].property_count; i++) {
+        const char *const name = face_property(ply, i)->name;
+        has_texture |= strcmp(name, "texcoord") == 0;
+        has_material |= strcmp(name, "material_index") == 0 || strcmp(name, "material_indices") == 0;
+    }
+    for (size_t i = 0; i < ply->header.elements[ply->header.vertex].property_count; i++) {
+        const char *const name = ply_property(&ply->header, (int)i)->name;
+        has_texture |= strcmp(name, "s") == 0 || strcmp(name, "u") == 0 || strcmp(name, "texture_u") == 0;
+    }
+    if (has_texture) mesh_note(mesh, "texture coordinates left out");
+    if (has_material) mesh_note(mesh, "materials of faces, by their numbers, left out");
 }
 
 static BpStatus read_all(Ply *ply, BpError *err) {
@@ -143,6 +196,7 @@ static BpStatus read_all(Ply *ply, BpError *err) {
         else
             BP_TRY(ply_pass_element(ply->input, &ply->header, i, err));
     }
+    note_left_out(ply);
     return ply_expect_end(ply->input, &ply->header, err);
 }
 

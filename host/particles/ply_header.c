@@ -61,8 +61,11 @@ static BpStatus parse_element(const Input *input, char **words, size_t count, Pl
     } else if (header->vertex == header->element_count) {
         header->vertex++; /* not seen yet: always one past the last */
     }
-    header->elements[header->element_count++] = (PlyElement){
-        .count = (uint64_t)rows, .first = header->property_count, .faces = strcmp(words[1], "face") == 0};
+    const bool strips = strcmp(words[1], "tristrips") == 0;
+    header->elements[header->element_count++] = (PlyElement){.count = (uint64_t)rows,
+                                                             .first = header->property_count,
+                                                             .faces = strips || strcmp(words[1], "face") == 0,
+                                                             .strips = strips};
     return BP_OK;
 }
 

@@ -24,7 +24,8 @@ typedef struct PlyElement {
     uint64_t count;
     size_t first, property_count; /* of the header's properties */
     size_t row_size;              /* in bytes, lists taken as empty */
-    bool has_list, faces;
+    bool has_list, faces;         /* faces: polygons, or strips of triangles */
+    bool strips;
 } PlyElement;
 
 typedef struct PlyHeader {

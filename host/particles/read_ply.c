@@ -24,13 +24,15 @@ static BpStatus add_point(BpParticleFile *file, const PlyHeader *header, const d
 }
 
 static void note_faces(BpParticles *particles, const PlyHeader *header) {
-    uint64_t faces = 0;
     char number[32];
-    for (size_t i = 0; i < header->element_count; i++)
-        if (header->elements[i].faces) faces += header->elements[i].count;
-    if (particles != NULL && faces > 0)
-        bp_particles_note(particles, "%s face%s left out", bp_format_whole(faces, number, sizeof number),
-                          bp_plural(faces));
+    if (particles == NULL) return;
+    for (size_t i = 0; i < header->element_count; i++) {
+        const PlyElement *const element = &header->elements[i];
+        if (element->faces && element->count > 0)
+            bp_particles_note(particles, "%s %s%s left out",
+                              bp_format_whole(element->count, number, sizeof number),
+                              element->strips ? "strip" : "face", bp_plural(element->count));
+    }
 }
 
 static BpStatus take_points(BpParticleFile *file, PlyHeader *header, BpError *err) {

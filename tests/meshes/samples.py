@@ -5,13 +5,14 @@ import zlib
 # A cube with corners at 0 and 1, wound outwards.
 CORNERS = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
 SIDES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+STRIPS = [[corner for a, b, c, d in SIDES for corner in (b, c, a, d, -1)]]
 TRIANGLES = [half for a, b, c, d in SIDES for half in ((a, b, c), (a, c, d))]
 
 SIZES = {"char": "b", "uchar": "B", "short": "h", "ushort": "H", "int": "i", "uint": "I", "float": "f", "double": "d"}
 
 
 def ply(form, vertices=CORNERS, faces=SIDES, place="float", count="uchar", index="int", name="vertex_indices", vertex_colors=None,
-        face_colors=None, color="uchar", face_first=False, extra=False):
+        face_colors=None, color="uchar", face_first=False, extra=False, element="face"):
     """A PLY file. `form`: ascii, little or big. `extra`: elements and properties, with lists, that mean nothing here."""
     def number(kind, value):
         return (b"%r " % (value,)).replace(b"'", b"") if form == "ascii" else struct.pack("<>"[form == "big"] + SIZES[kind], value)
@@ -20,7 +21,7 @@ def ply(form, vertices=CORNERS, faces=SIDES, place="float", count="uchar", index
     colors = [f"property {color} {c}" for c in ("red", "green", "blue")]
     vertex_head = [f"element vertex {len(vertices)}"] + [f"property {place} {axis}" for axis in "xyz"]
     vertex_head += (["property list uchar double more", "property float quality"] if extra else []) + (colors if vertex_colors else [])
-    face_head = [f"element face {len(faces)}"] + (["property list ushort float texcoord", "property char flags"] if extra else [])
+    face_head = [f"element {element} {len(faces)}"] + (["property list ushort float texcoord", "property char flags"] if extra else [])
     face_head += [f"property list {count} {index} {name}"] + (colors if face_colors else [])
     vertex_rows, face_rows = b"", b""
     for i, vertex in enumerate(vertices):
@@ -114,6 +115,7 @@ def seeds():
         "meshes_ply": {"ascii": text, "little": ply("little", extra=True, vertex_colors=COLORS), "big": ply("big", index="ushort"),
                        "faces-first": ply("little", face_first=True, count="int"), "cut": ply("little")[:-5],
                        "huge": text.replace(b"face 6", b"face 1000000000"), "l": ply("ascii", L_SHAPE, [range(6)]),
+                       "strips": ply("little", faces=STRIPS, element="tristrips"), "strip": ply("ascii", faces=STRIPS, element="tristrips"),
                        "gz": gzip_of(text)},
         "meshes_obj": {"plain": cube.encode(), "mtl": OBJ_WITH_MTL.encode() + b"\0" + MTL.encode(), "l": obj(L_SHAPE, [range(6)]).encode(),
                        "colours": b"v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n", "no-corners": b"v 0 0 0\nf\n", "curve": b"v 0 0 0\ncstype bezier\n",

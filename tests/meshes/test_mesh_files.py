@@ -111,6 +111,42 @@ class Ply(MeshTest):
             for first in (False, True):
                 self.is_cube(self.of("a.ply", ply(form, extra=True, face_first=first, vertex_colors=samples.COLORS)))
 
+    def test_strips(self):
+        def turned(face):
+            return tuple(face[face.index(min(face)):] + face[:face.index(min(face))])
+        want = [turned(list(face)) for face in TRIANGLES]
+        for form in ("ascii", "little", "big"):
+            for strips in (samples.STRIPS, [strip[:4] for strip in zip(*[iter(samples.STRIPS[0])] * 5)]):
+                found = self.of("a.ply", ply(form, faces=strips, element="tristrips"))
+                self.assertEqual([turned(face) for face in found["faces"]], want)
+                self.assertEqual((found["edge"]["fault"], found["dropped"], found["area"]), (0, 0, 6))
+            corners = [(0, 0, 0), (0, 1, 0), (1, 0, 0), (0, 0, 1)]
+            found = self.of("a.ply", ply(form, corners, [(0, 1, 2, 3, 0, 1)], element="tristrips"))
+            self.assertEqual(found["faces"], [[0, 1, 2], [2, 1, 3], [2, 3, 0], [0, 3, 1]])
+            self.assertEqual(found["edge"]["fault"], 0)
+            # Two parts that are joined by vertices twice.
+            found = self.of("a.ply", ply(form, faces=[(0, 2, 1, 3, 3, 4, 4, 5, 6, 7)], element="tristrips"))
+            self.assertEqual((found["faces"], found["dropped"]), ([[0, 2, 1], [1, 2, 3], [4, 5, 6], [6, 5, 7]], 0))
+            text = ply(form, corners, [(0, 1), (), (0, 1, 2, 4)], element="tristrips")
+            says = self.refuse("a.ply", text, "strip 2", "vertex 4", line=17 if form == "ascii" else 0)
+            self.assertIn("one of 4 vertices", says)
+            self.refuse("a.ply", ply(form, corners, [(0, 1, -2)], element="tristrips"), "strip 0", "vertex -2")
+            given = [(255, 0, 0), (0, 0, 255)]
+            found = self.of("a.ply", ply(form, faces=[(0, 1, 3, 2), (4, 6, 7)], element="tristrips", face_colors=given))
+            self.near(found["face_colors"], [[1, 0, 0], [1, 0, 0], [0, 0, 1]])
+        self.refuse("a.ply", ply("ascii", extra=True).replace(b"element camera 1", b"element tristrips 1"), "a second time")
+
+    def test_left_out(self):
+        """What belongs to surfaces and is not read has a note."""
+        text = ply("ascii", CORNERS[:3], [(0, 1, 2)], extra=True)
+        self.assertEqual(self.of("a.ply", text)["notes"], "texture coordinates left out")
+        for name in ("material_index", "material_indices"):
+            self.assertIn("materials of faces, by their numbers, left out", self.of("a.ply", text.replace(b"flags", name.encode()))["notes"])
+        self.assertEqual(self.of("a.ply", ply("ascii"))["notes"], "")
+        for name in ("s", "u", "texture_u"):
+            found = self.of("a.ply", text.replace(b"texcoord", b"other").replace(b"quality", name.encode()))
+            self.assertEqual(found["notes"], "texture coordinates left out")
+
     def test_colors(self):
         colors = [(255, 0, 0), (0, 128, 255), (1, 2, 3)]
         for form in ("ascii", "little", "big"):
