@@ -65,7 +65,11 @@ static BpStatus refuse_name(const BpNode *node, const BpMesh *mesh, BpError *err
     if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a mesh's materials");
     for (size_t m = 0; m < mesh->material_count; m++)
         if (mesh->materials[m].face_count > 0) names[count++] = mesh->materials[m].name;
-    bp_missing_name_text("material", "the file", names, count, node->member, text);
+    if (count > 0)
+        bp_missing_name_text("material", "the file", names, count, node->member, text);
+    else
+        snprintf(text, sizeof text,
+                 "the file names no materials of faces; remove it, and give all of them one by \"material\"");
     free(names);
     return bp_node_fail(node, BP_PART_NAME, err, "%s", text);
 }

@@ -167,7 +167,7 @@ class Meshes(ProgramTest):
                            ({"file": "cube.off", "material": "clay", "interior": "fog"}, "meshes[0].interior: not for meshes"),
                            ({"file": "cube.off", "material": "clay", "motion": [0, 1, 0]}, "meshes[0].motion: not for meshes"),
                            ({"file": "cube.off", "material": "clay", "colour": 1}, "meshes[0].colour: unknown member"),
-                           ({"file": "cube.off", "materials": {"bark": "clay"}}, 'meshes[0].materials.bark: found the material "bark"'),
+                           ({"file": "cube.off", "materials": {"bark": "clay"}}, 'meshes[0].materials.bark: the file names no materials of faces'),
                            ({"file": "cube.off", "materials": {}}, "without a material of its own"),
                            ({"file": "cube.off", "material": "skin"}, "meshes[0].material: triangle 0 (from 0) of cube.off"),
                            ({"file": "cube.off", "material": "mapped"}, "laid around spheres"),
