@@ -141,7 +141,7 @@ void bp_particle_file_close(BpParticleFile **file) {
 
 /* Whether the frame that failed is one that is still being written, behind at least one whole frame. */
 static bool is_cut(const BpParticleFile *file, BpStatus status) {
-    return status == BP_ERR_SCENE && file->frame > 0 && file->input.ended;
+    return status == BP_ERR_SCENE && file->frame > 0 && file->input.ended && file->behind != BEHIND_PARTICLES;
 }
 
 BpStatus bp_particle_file_next(BpParticleFile *file, BpParticles *particles, bool *end, BpError *err) {
@@ -151,8 +151,8 @@ BpStatus bp_particle_file_next(BpParticleFile *file, BpParticles *particles, boo
     const locale_t before = uselocale(point);
     BpError fault = {0};
     file->out = particles;
-    *end = false;
-    BpStatus status = formats[file->format].read(file, end, &fault);
+    *end = file->behind == BEHIND_TEXT;
+    BpStatus status = *end ? BP_OK : formats[file->format].read(file, end, &fault);
     if (status == BP_OK && !*end) status = frame_end(file, &fault);
     file->out = NULL;
     uselocale(before);
@@ -181,6 +181,7 @@ static BpStatus go_back(BpParticleFile *file, BpError *err) {
         BP_TRY(input_rewind(&file->input, err));
     }
     file->frame = 0;
+    file->behind = BEHIND_FRAME_OR_END;
     return BP_OK;
 }
 
@@ -203,8 +204,9 @@ static bool has_more_frames(BpParticleFile *file) {
     uint64_t count = 0;
     switch (file->format) {
     case BP_PARTICLES_XYZ:
-    case BP_PARTICLES_GRO:
     case BP_PARTICLES_DUMP:
+        return file->input.held != NULL && file->behind != BEHIND_TEXT;
+    case BP_PARTICLES_GRO:
         return has_more_text(&file->input);
     case BP_PARTICLES_PDB:
     case BP_PARTICLES_PQR:

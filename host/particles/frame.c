@@ -335,3 +335,23 @@ void frame_cell_angles(BpParticleFile *file, const double lengths[3], const doub
     const double edges[3][3] = {{a, 0, 0}, {b * cosine[2], b * sine, 0}, {c * cosine[1], c * y, c * sqrt(z)}};
     frame_cell(file, origin, edges, FRAME_PERIODIC);
 }
+
+const char *frame_line_behind(BpParticleFile *file, char text[1024]) {
+    char *line = NULL;
+    BpError later = {0};
+    const BpStatus status = input_full_line(&file->input, &line, &later);
+    bp_error_clear(&later);
+    if (status != BP_OK || line == NULL) return NULL;
+    snprintf(text, 1024, "%s", line);
+    input_hold(&file->input, line);
+    return text;
+}
+
+BpStatus frame_fail_behind(BpParticleFile *file, const char *number, BpError *err) {
+    file->behind = BEHIND_PARTICLES;
+    file->input.line++; /* the line that is held */
+    return input_fail(&file->input, true, err,
+                      "found more atoms than %s, expected another frame or the end of the file: correct "
+                      "that number",
+                      number);
+}

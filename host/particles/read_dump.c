@@ -248,6 +248,16 @@ static BpStatus take_frame(BpParticleFile *file, Dump *dump, BpError *err) {
     return BP_OK;
 }
 
+/* Behind the last atom there is nothing, or another frame, of which "ITEM:" may not be written whole yet. */
+static BpStatus check_behind(BpParticleFile *file, BpError *err) {
+    static const char item[] = "ITEM:";
+    char text[1024];
+    const char *const line = frame_line_behind(file, text);
+    if (line == NULL || strncmp(line, item, strlen(line) < strlen(item) ? strlen(line) : strlen(item)) == 0)
+        return BP_OK;
+    return frame_fail_behind(file, "ITEM: NUMBER OF ATOMS", err);
+}
+
 BpStatus read_dump(BpParticleFile *file, bool *end, BpError *err) {
     Input *const input = &file->input;
     char *line = NULL;
@@ -266,13 +276,11 @@ BpStatus read_dump(BpParticleFile *file, bool *end, BpError *err) {
             if (dump == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
             const BpStatus status = take_frame(file, dump, err);
             free(dump);
-            return status;
+            return status == BP_OK ? check_behind(file, err) : status;
         }
         BP_TRY(input_full_line(input, &line, err));
     }
-    return input_fail(input, true, err, "found %s, expected ITEM: TIMESTEP, as %s",
+    return input_fail(input, true, err, "found %s, expected ITEM: TIMESTEP, as %s begins",
                       line == NULL ? "the end of the file" : "another line",
-                      file->frame == 0 ? "a LAMMPS dump begins"
-                                       : "each frame begins: does the one before it have more atoms than its "
-                                         "ITEM: NUMBER OF ATOMS says?");
+                      file->frame == 0 ? "a LAMMPS dump" : "each frame");
 }

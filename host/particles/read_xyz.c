@@ -351,15 +351,44 @@ static BpStatus fail_count(const BpParticleFile *file, const char *line, char *c
         return input_fail(
             &file->input, true, err,
             "found an empty file, expected the number of atoms alone: an XYZ file's first line");
-    if (file->frame > 0)
-        return input_fail(
-            &file->input, true, err,
-            "found other words, expected the number of atoms of another frame alone, or the end of "
-            "the file: does the frame before it have more atoms than its first line says?");
     return input_fail(
         &file->input, true, err,
         "found other words, expected the number of atoms alone: an XYZ file's first line%s",
         word_number(words[0], &number) ? "; a table of points is read under a name that ends in .csv" : "");
+}
+
+/* Whether a line, apart from the type of the atom, could be one of the frame's: it has as many words, and
+ * numbers as its place. */
+static bool is_like_atom(const Layout *layout, char *text) {
+    char *words[WORDS_MAX];
+    double number = 0;
+    const size_t found = split_atom(text, layout, words);
+    if (found < layout->word_count || (layout->extended && found > layout->word_count)) return false;
+    size_t w = 0;
+    for (size_t p = 0; p < layout->property_count; p++) {
+        const Role role = layout->property[p].role;
+        for (size_t i = 0; role == POSITION && i < 3; i++)
+            if (!word_number_or_none(words[w + i], &number)) return false;
+        /* Types may be numbers, but have no fraction. */
+        int64_t whole = 0;
+        if (role == SPECIES && word_number(words[w], &number) && !word_whole(words[w], &whole)) return false;
+        w += (size_t)layout->property[p].words;
+    }
+    return true;
+}
+
+/* Behind the last atom there is nothing, or the number of atoms of another frame, or text of other programs,
+ * as the frequencies and names of the data set QM9; but no further atom. */
+static BpStatus check_behind(BpParticleFile *file, const Layout *layout, BpError *err) {
+    char text[1024], copy[1024], *words[2];
+    int64_t number = 0;
+    if (frame_line_behind(file, text) == NULL) return BP_OK;
+    memcpy(copy, text, sizeof copy);
+    if (split_words(copy, words, 2) == 1 && word_whole(words[0], &number)) return BP_OK;
+    if (is_like_atom(layout, text)) return frame_fail_behind(file, "the number above them", err);
+    file->behind = BEHIND_TEXT;
+    if (file->out != NULL) bp_particles_note(file->out, "text behind the last frame left out");
+    return BP_OK;
 }
 
 BpStatus read_xyz(BpParticleFile *file, bool *end, BpError *err) {
@@ -377,6 +406,7 @@ BpStatus read_xyz(BpParticleFile *file, bool *end, BpError *err) {
     BpStatus status = layout != NULL && value != NULL ? begin_frame(file, line, layout, value, err)
                                                       : bp_fail(err, BP_ERR_MEMORY, "out of memory");
     for (uint64_t i = 0; i < count && status == BP_OK; i++) status = take_atom(file, layout, i, count, err);
+    if (status == BP_OK) status = check_behind(file, layout, err);
     if (status == BP_OK) frame_note_shapes(file, layout->ellipsoids, "ellipsoid");
     free(value);
     free(layout);

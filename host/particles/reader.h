@@ -12,6 +12,13 @@
 #include "input.h"
 #include "particles.h"
 
+/* What stands behind a frame that was read, in formats whose frames tell how many particles they have. */
+typedef enum Behind {
+    BEHIND_FRAME_OR_END,
+    BEHIND_TEXT,     /* of another kind, and so no more frames */
+    BEHIND_PARTICLES /* more than the frame tells: its number is wrong */
+} Behind;
+
 struct BpParticleFile {
     Input input;
     BpParticleFormat format;
@@ -21,7 +28,8 @@ struct BpParticleFile {
     uint64_t frame_count;   /* once it is known */
     bool frame_count_known; /* from an index, or from reading all */
     bool cut;               /* behind the last whole frame there is a part of another */
-    BpParticles *out;       /* where frame_add puts points; NULL: nowhere */
+    Behind behind;
+    BpParticles *out;   /* where frame_add puts points; NULL: nowhere */
     size_t taken_count; /* of the wanted columns, how many this frame's are taken: all, or none when passed
                            over */
     int wanted_column[BP_PARTICLE_WANTED_MAX]; /* the first taken_count of them are set */
@@ -48,6 +56,11 @@ typedef struct Particle {
         .radius = NAN, .color = { NAN, NAN, NAN }                                                            \
     }
 
+/* The line behind a frame, other than blank ones, which stays to be taken; NULL: the file ends, or cannot be
+ * read on, as the next frame will report. The line is a copy in `text`, and may be cut. */
+const char *frame_line_behind(BpParticleFile *file, char text[1024]);
+/* Fails, since there are more particles than the frame's `number`: "the number above them". */
+BpStatus frame_fail_behind(BpParticleFile *file, const char *number, BpError *err);
 /* Begins a frame whose numeric columns are `columns`; fails if a wanted one is not among them. */
 BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t column_count, BpError *err);
 /* Hands one particle over. One without a place (a coordinate that is NaN) is left out and counted. Fails on

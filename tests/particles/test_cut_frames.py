@@ -87,7 +87,7 @@ class Cut(files.FileTest):
             for content in (bad, bad[:-15]):
                 result = self.answer(self.write(name, content), -1)
                 self.assertEqual(result.returncode, 1, (name, result.stdout[:300]))
-        self.refuse("a.xyz", "1\n\nO 0 0 0\nO 1 1 1\n", "number of atoms", arguments=[1])
+        self.refuse("a.xyz", "1\n\nO 0 0 0\nO 1 1 1\n", "more atoms", arguments=[1])
 
     def test_frames_of_pdb_that_differ(self):
         """Frames may have fewer atoms than those before, and the last may lack its END if it has as many."""

@@ -442,7 +442,7 @@ class Hostile(FileTest):
         self.refuse("a.xyz", "1000000000\n\nO 0 0 0\n", ":1:", "1000000000", "at most 134217728")
         self.refuse("a.xyz", "100000000\n\nO 0 0 0\n", ":4:", "atom 1 (from 0) of 100000000")
         self.refuse("a.xyz", "-3\n\nO 0 0 0\n", ":1:", "-3")
-        self.refuse("a.xyz", "1\n\nO 0 0 0\nO 1 1 1\n", ":4:", "number of atoms", arguments=[1])
+        self.refuse("a.xyz", "1\n\nO 0 0 0\nO 1 1 1\n", ":4:", "more atoms", arguments=[1])
         self.refuse("a.gro", GRO.replace("    3\n", "134217728\n"), ":6:", "expected a coordinate")
         self.refuse("a.gro", GRO.replace("    3\n", "1000000000\n"), ":2:")
         self.refuse("a.dump", DUMP.replace("ATOMS\n2\n", "ATOMS\n100000000\n"), ":12:", "expected 6")

@@ -36,8 +36,8 @@ class TableTest(AnswersTest):
         self.assertEqual(result.returncode, 0, f"{content[:200]!r}: {result.stderr}")
         return json.loads(result.stdout)
 
-    def refuse(self, name, content, *says):
-        result = self.summary(name, content, 0)
+    def refuse(self, name, content, *says, frame=0):
+        result = self.summary(name, content, frame)
         self.assertEqual(result.returncode, 1, f"{content[:200]!r}: {result.stdout[:300]}{result.stderr[-1000:]}")
         for text in says:
             self.assertIn(text, result.stderr)
@@ -302,8 +302,33 @@ class Xyz(TableTest):
             self.assertIn("CELL passed over", found["notes"])
 
     def test_wrong_counts(self):
-        result = self.summary("a.xyz", "1\n\nC 0 0 0\nC 0 0 1\n", -1)
-        self.assertIn("more atoms than its first line says", result.stderr)
+        one, two = "1\n\nC 0 0 0\n", "1\n\nC 0 0 0\nC 0 0 1\n"
+        for text, line in ((two, 4), (two + one, 4), (one + two, 7), ("\n" + two + "\n", 5), ("1\n\n1 0 0 0\n\n1 0 0 1 9\n", 5)):
+            for frame in (0, 1, -1):
+                if (text, frame) == (one + two, 0):
+                    continue
+                result = self.summary("a.xyz", text, frame)
+                self.assertIn(f":{line}: found more atoms than the number above them", result.stderr, (text, frame))
+        head = "1\nProperties=pos:R:3:species:S:1\n"
+        self.refuse("a.xyz", head + "0 0 0 C\n0 0 1 C\n", ":4: found more atoms")
+
+    def test_text_behind(self):
+        """What stands behind the last frame and is neither an atom nor a frame is left out, with a note."""
+        numbers, names, molecule = "1341.307\t1341.3284\t1562.6731\t3038.3205\n", "C\tC\n", "InChI=1S/CH4/h1H4\tInChI=1S/CH4/h1H4\n"
+        atoms = "2\ngdb 1\nC\t0\t0\t0\t-0.53\nH\t0\t0\t1.1*^0\t0.13\n"
+        for behind in (numbers + names + molecule, names, "\n" + molecule, "end\n", "0.5 0.5\n"):
+            for count in (1, 3):
+                for frame in (0, count - 1, -1):
+                    found = self.of("a.xyz", atoms * count + behind, frame)
+                    self.assertEqual((found["count"], found["elements"]), (2, {"C": 1, "H": 1}))
+                    note = "text behind the last frame left out"
+                    self.assertEqual(note in found["notes"], frame in (count - 1, -1), (behind, count, frame))
+                    self.assertEqual("the first of several" in found["notes"], count > 1 and frame == 0)
+            self.refuse("a.xyz", atoms + behind, "found 1 frame,", frame=1)
+        # The next frame is still being written.
+        for length in range(len(atoms)):
+            found = self.of("a.xyz", atoms + atoms[:length], 0)
+            self.assertEqual((found["count"], "text" in found["notes"]), (2, False))
         self.refuse("a.xyz", "0.5 0 0\n1 0 0\n", ":1:", "ends in .csv")
         self.refuse("a.xyz", "x y z\n1 0 0\n", ":1:", "first line\n")
 
