@@ -19,6 +19,7 @@
 #define shear_at_triangles LANED(shear_at_triangles)
 #define intersect_triangle LANED(intersect_triangle)
 #define intersect_left_triangle LANED(intersect_left_triangle)
+#define intersect_triangle_beside_sphere LANED(intersect_triangle_beside_sphere)
 #define surface_of_triangle LANED(surface_of_triangle)
 
 typedef struct Hit {
@@ -128,15 +129,36 @@ static Shear shear_at_triangles(const Geometry *geometry, const Ray *ray) {
         const Triangle left = load_triangle_if(geometry, leaves, ray->own_slot);
         shear.doubt = choose(leaves, doubt_of(ray, &left), shear.doubt);
     }
+#if SPHERES_MET && ROBUST_SHAPES
+    const vbool leaves_sphere = vbool_of_uint(ray->own_slot != splat_uint(NO_SLOT)) & vbool_not(leaves);
+    shear.doubt = choose(leaves_sphere, splat(0), shear.doubt);
+#endif
     return shear;
 }
 
 #if ROBUST_SHAPES
+#if SPHERES_MET
+static void intersect_triangle_beside_sphere(const Geometry *geometry, const Ray *ray, const Shear *shear, vbool doubtful,
+                                             const Triangle *triangle, vuint slot, Hit *hit) {
+    vrefined t;
+    vbool enters;
+    const Sphere left = sphere_for_ray(geometry, ray, choose_uint(doubtful, ray->own_slot, splat_uint(0)));
+    const vbool found = triangle_beside_sphere(ray, shear, triangle, left.centre, left.radius, &t, &enters) & doubtful;
+    keep_closer(geometry, found, t, slot, enters, hit);
+}
+#endif
+
 /* Decides about candidates of which triangle_decide is doubtful. */
 static void intersect_left_triangle(const Geometry *geometry, const Ray *ray, const Shear *shear, vbool doubtful,
                                     const Triangle *triangle, vuint slot, Hit *hit) {
     vrefined t;
     vbool enters;
+#if SPHERES_MET
+    const vbool beside_sphere = doubtful & vbool_not(is_triangle(geometry, ray->own_slot));
+    if (any_lane(beside_sphere))
+        intersect_triangle_beside_sphere(geometry, ray, shear, beside_sphere, triangle, slot, hit);
+    doubtful = doubtful & vbool_not(beside_sphere);
+#endif
     const Triangle left = load_triangle_if(geometry, doubtful, ray->own_slot);
     const vbool found = triangle_intersect(ray, shear, triangle, &left, doubtful, &t, &enters) & doubtful;
     keep_closer(geometry, found, t, slot, enters, hit);

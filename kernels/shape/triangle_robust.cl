@@ -7,6 +7,7 @@
  *        triangle_decide        does the ray meet it, at which distance, and from outside (the side from which its
  *                               vertices run counter-clockwise) or inside? Or is that for the next to decide?
  *        triangle_intersect     the same, for every triangle
+ *        triangle_beside_sphere the same, for a ray that leaves a sphere
  *        triangle_surface       the point that was met, as an origin for the next ray, and the outward unit normal
  * Knows: ray.cl, wide.cl.   Does not know: trees, materials. Read once for each number of lanes.
  *
@@ -22,7 +23,8 @@
  *   strictly on that side is not met;
  * - where the triangle that is left lies on one closed side of the other's plane, the ray meets that only from there,
  *   and a distance that rounding made negative is 0; where it lies in that plane, never;
- * - of an edge that both share, the edge function is d.n of the one that is left, times what is known to be positive. */
+ * - of an edge that both share, the edge function is d.n of the one that is left, times what is known to be positive.
+ * A sphere that is left, and lies on one side of the plane of a triangle that it touches, stands for the second of these. */
 #if EFFECT_TRIANGLES
 #undef OWN_SHAPE_IS_MET
 #undef ROBUST_SHAPES
@@ -44,6 +46,8 @@
 #define triangle_is_candidate LANED(triangle_is_candidate)
 #define triangle_decide LANED(triangle_decide)
 #define triangle_intersect LANED(triangle_intersect)
+#define triangle_beside_sphere LANED(triangle_beside_sphere)
+#define holds_foot LANED(holds_foot)
 #define triangle_surface LANED(triangle_surface)
 #define same_place LANED(same_place)
 #define is_vertex_of LANED(is_vertex_of)
@@ -63,7 +67,7 @@ typedef struct Shear {
     Vec3 origin, low;       /* turned */
     Vec3 slope;             /* what is added to x and y for each step along -z, and 1 / direction.z */
     vreal margin, error;    /* of the ray and of its origin */
-    vreal doubt;            /* doubt_of, below 0 where no triangle is left */
+    vreal doubt;            /* doubt_of, 0 where a sphere is left, below 0 where nothing is */
 } Shear;
 
 /* Turns a vector so that the axis that the ray runs along is z: by one or two places, which keeps its handedness. */
@@ -81,7 +85,7 @@ static Triangle turn_triangle(const Shear *shear, const Triangle *triangle) {
     return turned;
 }
 
-/* Of a ray that leaves no triangle. */
+/* Of a ray that leaves nothing. */
 static Shear shear_of(const Ray *ray) {
     const Vec3 d = ray->direction;
     const vreal x = fabs(d.x), y = fabs(d.y), z = fabs(d.z);
@@ -179,8 +183,8 @@ static vreal area_bound(const Triangle *triangle) {
     return R(2.0) * (fabs(b.x) + fabs(b.y) + fabs(b.z)) * (fabs(c.x) + fabs(c.y) + fabs(c.z));
 }
 
-/* Of a triangle that is turned. `doubtful`: the ray leaves a triangle, and the origin or what is met may lie in the other's
- * plane; the rest then means nothing. The moment is the distance times d.n, so it is compared with what |n| may be. */
+/* Of a triangle that is turned. `doubtful`: the ray leaves a triangle or a sphere, and the origin or what is met may lie in the
+ * other's plane; the rest then means nothing. The moment is the distance times d.n, so it is compared with what |n| may be. */
 FORCE_INLINE static vbool triangle_decide(const Shear *shear, const Triangle *turned, vrefined *t, vbool *enters,
                                           vbool *doubtful) {
     const Edges edges = edges_of(shear, turned);
@@ -287,6 +291,49 @@ FORCE_INLINE static vbool triangle_intersect(const Ray *ray, const Shear *shear,
     *enters = from_outside(shear, sum);
     return held & ahead;
 }
+
+#if SPHERES_MET
+/* Whether a triangle holds the foot of a point: of the ray's origin, along about its normal. */
+static vbool holds_foot(const Ray *ray, const Triangle *triangle, Vec3 normal) {
+    Ray fall = *ray;
+    fall.direction = normal;
+    const Shear shear = shear_of(&fall);
+    const Triangle turned = turn_triangle(&shear, triangle);
+    const Edges edges = edges_of(&shear, &turned);
+    Wide sum;
+    return edges_hold(&edges, &sum);
+}
+
+/* For a ray that leaves a sphere. Where the origin lies in the triangle's plane, but for its error, and the sphere on one side of
+ * that, the ray meets the triangle only from there. A distance that rounding made negative is 0, and then the place is that of
+ * the origin, for a line that grazes the plane meets it elsewhere. A sphere whose numbers were rounded may dip into the plane
+ * that it rests on: by 2^-19 of its radius it counts as on one side. */
+static vbool triangle_beside_sphere(const Ray *ray, const Shear *shear, const Triangle *triangle, Vec3 centre, vreal radius,
+                                    vrefined *t, vbool *enters) {
+    const Triangle turned = turn_triangle(shear, triangle);
+    const Edges edges = edges_of(shear, &turned);
+    Wide sum;
+    const vbool held = edges_hold(&edges, &sum);
+    const Wide distance = edges_distance(&edges, edges_moment(&edges), sum);
+    WideVec d;
+    d.x = wide(ray->direction.x);
+    d.y = wide(ray->direction.y);
+    d.z = wide(ray->direction.z);
+    const WideVec normal = wide_cross(wide_from(triangle->a, triangle->b), wide_from(triangle->a, triangle->c));
+    const WideVec way = wide_from(triangle->a, centre);
+    const Vec3 unit = wide_unit(normal);
+    const vreal length = fma(wide_near(normal.x), unit.x, fma(wide_near(normal.y), unit.y, wide_near(normal.z) * unit.z));
+    const vreal height = wide_near(wide_dot(way, normal)), meets = wide_near(wide_dot(d, normal)), error = ray->origin.error;
+    const vreal rounding = WIDE_ROUNDOFF * one_norm(way) * one_norm(normal);
+    const vbool at_once = fabs(wide_near(distance) * meets) <= error * one_norm(normal);
+    const vbool ruled = at_once & (fabs(height) + rounding >= length * (radius * (R(1.0) - R(0x1p-19)) - error));
+    const vbool reached = ((height > splat(0)) & (meets < splat(0))) | ((height < splat(0)) & (meets > splat(0)));
+    const vbool ahead = held & wide_above_0(distance);
+    *t = choose_refined(wide_above_0(distance), wide_refined(distance), splat_refined(0));
+    *enters = meets < splat(0);
+    return (vbool_not(ruled) & ahead) | (ruled & reached & (ahead | holds_foot(ray, triangle, unit)));
+}
+#endif
 
 /* From the triangle's vertices, not along the ray: off the plane only by rounding, whatever the ray's length. */
 FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triangle, Point *point, Vec3 *normal) {

@@ -292,15 +292,24 @@ __kernel void probe_turns(SCENE_PARAMETERS uint count, __global const real *rays
     row[0] = (refined)slot_sphere[hit.slot];
     row[1] = hit.enters;
     row[2] = hit.t;
+#if EFFECT_TRIANGLES
     Point point;
     Vec3 outward;
-#if EFFECT_TRIANGLES
+    int inward = 0; /* a sphere is left to either side */
+#ifdef Roots
+    if (!is_triangle(&scene.geometry, hit.slot)) {
+        const Sphere sphere = sphere_for_ray(&scene.geometry, &ray, hit.slot);
+        sphere_surface(&ray, &sphere, hit.slot, hit.t, hit.enters, &point, &outward);
+        inward = dot3(vec3(directions[3 * item], directions[3 * item + 1], directions[3 * item + 2]), outward) < 0;
+    }
+#endif
     surface_of_triangle(&scene.geometry, &ray, &hit, 1, &point, &outward);
     Ray next = ray;
     next.origin = point;
     next.cull_margin = cull_margin_of(&point);
     next.direction = vec3(directions[3 * item], directions[3 * item + 1], directions[3 * item + 2]);
     next.own_slot = hit.slot;
+    next.inward = inward;
     const Hit then = intersect_closest(&scene.geometry, &next, 1);
     if (then.slot != NO_SLOT) {
         row[3] = (refined)slot_sphere[then.slot];

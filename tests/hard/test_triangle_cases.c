@@ -3,8 +3,8 @@
  *     hard_triangle_cases double|float|all-double
  *
  * hard_triangles aims at the edges and vertices of closed meshes; these are what meshes seldom have:
- * triangles that are far, tiny, huge, thin, seen from their edge or in one place, and rays along the axes.
- * Exit code 1: one of them has another value. */
+ * triangles that are far, tiny, huge, thin, seen from their edge or in one place, rays along the axes, and
+ * balls that lie on triangles. Exit code 1: one of them has another value. */
 #include "turns.h"
 
 #include <stdio.h>
@@ -16,6 +16,8 @@ enum { RAYS = 20000, MOST = 600 };
 static double rays[RAYS * RAY_REALS], directions[RAYS * 3], out[RAYS * TURN_REALS];
 static BpTriangle triangles[MOST];
 static size_t triangle_count;
+static BpSphere ball;
+static size_t ball_count;
 static uint64_t state = 7;
 
 static void add(double ax, double ay, double az, double bx, double by, double bz, double cx, double cy,
@@ -55,7 +57,7 @@ static void aim(double *ray, const double from[3], const double to[3]) {
 }
 
 static void run(const Lab *lab) {
-    BpWorker *worker = turns_worker(lab, triangles, triangle_count);
+    BpWorker *worker = turns_worker(lab, &ball, ball_count, triangles, triangle_count);
     lab_unit_rays(lab, RAYS, rays);
     turns_run(lab, worker, RAYS, rays, directions, out);
     bp_worker_destroy(&worker);
@@ -422,6 +424,154 @@ static bool duplicate(const Lab *lab) {
     return right;
 }
 
+/* ---- balls on triangles ---- */
+
+/* A square around a point, in two triangles, whose diagonal passes through it. */
+static void add_face(const double middle[3], const double u[3], const double v[3]) {
+    double at[4][3];
+    for (int k = 0; k < 4; ++k)
+        for (int a = 0; a < 3; ++a)
+            at[k][a] = middle[a] + (k == 1 || k == 2 ? u[a] : -u[a]) + (k >= 2 ? v[a] : -v[a]);
+    for (int half = 0; half < 2; ++half) {
+        const double *b = at[1 + half], *c = at[2 + half];
+        add(at[0][0], at[0][1], at[0][2], b[0], b[1], b[2], c[0], c[1], c[2]);
+    }
+}
+
+static void put_ball(double x, double y, double z, double radius) {
+    const double center[3] = {x, y, z};
+    ball = (BpSphere){.radius = lab_float(radius), .albedo = BP_NO_ALBEDO};
+    for (int a = 0; a < 3; ++a) ball.center[a] = lab_float(center[a]);
+    ball_count = 1;
+}
+
+/* From within the ball to where it touches each face, and beside that by `least` to `most` radii, and out of
+ * it there, or back into it. What is met next is compared with the ray in 113 bits from the exact place: a
+ * face that the origin lies on is met at once. Faces are pairs of triangles, and face f is touched at
+ * `at[f]`. */
+static bool leave_ball(const Lab *lab, const char *what, size_t faces, const double (*at)[3], double least,
+                       double most) {
+    const double r = ball.radius;
+    const double sphere[4] = {ball.center[0], ball.center[1], ball.center[2], r};
+    size_t turns = 0, at_once = 0, through = 0, wrong = 0, apart = 0;
+    for (size_t i = 0; i < RAYS; ++i) {
+        const size_t face = lab_bits(&state) % faces;
+        const double part = most * r * pow(10, i % 3 == 0 ? 0 : between(log10(least / most), 0));
+        double from[3], to[3], n[3], way[3], *d = directions + 3 * i;
+        for (int a = 0; a < 3; ++a) n[a] = (at[face][a] - ball.center[a]) / r;
+        lab_direction(&state, from);
+        lab_direction(&state, way);
+        lab_direction(&state, d);
+        const double lean = lab_dot(way, n), down = lab_dot(d, n);
+        for (int a = 0; a < 3; ++a) {
+            from[a] = ball.center[a] + 0.7 * r * from[a];
+            to[a] = at[face][a] + part * (way[a] - lean * n[a]) / sqrt(1 - lean * lean);
+            if (i % 4 == 0) d[a] += (1e-4 - 1) * down * n[a]; /* grazing */
+        }
+        aim(rays + i * RAY_REALS, from, to);
+        lab_float_unit(d);
+    }
+    run(lab);
+    for (size_t i = 0; i < RAYS; ++i) {
+        const double *ray = rays + i * RAY_REALS, *row = out + i * TURN_REALS;
+        if (row[TURN_MET] != 0) continue; /* a face, by rounding before the ball's own surface */
+        const Exact exact = exact_roots(ray, sphere);
+        Wide origin[3], d[3], w[3], t = 0, best = 1e30;
+        double outward[3], lean = 0;
+        bool outside = false, unsure = false;
+        long expected = -1;
+        for (int a = 0; a < 3; ++a) {
+            origin[a] =
+                (Wide)ray[RAY_HIGH + a] + (Wide)ray[RAY_LOW + a] + exact.far * (Wide)ray[RAY_DIRECTION + a];
+            d[a] = (Wide)directions[3 * i + (size_t)a];
+            outward[a] = (double)(origin[a] - (Wide)ball.center[a]) / r;
+        }
+        const double leaves = lab_dot(outward, directions + 3 * i);
+        if (fabs(leaves) < 1e-6) continue; /* rounding may turn it to the other side */
+        if (leaves < 0) {                  /* to the end of a chord, unless a face cuts it */
+            best = (Wide)(-2 * r * leaves);
+            expected = 0;
+        }
+        for (size_t f = 0; f < triangle_count; ++f) {
+            const BpTriangle *triangle = &triangles[f];
+            double u[3], v[3], n[3], to_ball[3];
+            for (int a = 0; a < 3; ++a) {
+                u[a] = triangle->vertices[1][a] - triangle->vertices[0][a];
+                v[a] = triangle->vertices[2][a] - triangle->vertices[0][a];
+                to_ball[a] = ball.center[a] - triangle->vertices[0][a];
+            }
+            lab_cross(u, v, n);
+            const double heads = lab_dot(n, directions + 3 * i), cosine = fabs(heads) / sqrt(lab_dot(n, n));
+            const bool from_ball = heads * lab_dot(n, to_ball) < 0;
+            const Wide near = 4 * (Wide)row[TURN_ERROR];
+            unsure = unsure || near > (Wide)cosine; /* along its plane, which is met anywhere */
+            if (!turns_passes(triangle, origin, d, 1e-9, w, &t, &outside)) continue;
+            /* In its plane: met from the ball's side. Where a chord ends: rounding may take either first. */
+            if (t * (Wide)cosine < (from_ball ? -near : near)) continue;
+            unsure = unsure || (leaves < 0 && wide_abs(t - best) * (Wide)cosine < near);
+            if (t >= best) continue;
+            best = t;
+            lean = cosine;
+            expected = (long)(f / 2) + 1;
+        }
+        if (unsure) continue;
+        const long next = row[TURN_NEXT] < 1 ? (long)row[TURN_NEXT] : (long)(row[TURN_NEXT] + 1) / 2;
+        const double off = fabs(row[TURN_NEXT_T] - fmax((double)best, 0)) * lean;
+        ++turns;
+        at_once += next > 0 && row[TURN_NEXT_T] == 0;
+        through += next < expected;
+        wrong += next != expected;
+        apart += next > 0 && off > 4 * row[TURN_ERROR] + 1e-6 * fabs((double)best) * lean;
+    }
+    printf("%s, %s: %zu turns, %zu at once, %zu through, %zu wrong, %zu at another distance\n", lab->name,
+           what, turns, at_once, through, wrong, apart);
+    return turns > RAYS / 4 && at_once > 0 && wrong == 0 && apart == 0;
+}
+
+/* Touched at the floor's diagonal, and in the middle of one of its triangles. */
+static bool ball_on_a_floor(const Lab *lab) {
+    const double u[3] = {900, 0, 0}, v[3] = {0, 900, 0}, middle[3] = {100, 40, -7},
+                 at[2][3] = {{100, 40, -7}, {350, 40, -7}};
+    bool right = true;
+    add_face(middle, u, v);
+    for (int k = 0; k < 2; ++k) {
+        put_ball(at[k][0], at[k][1], -7 + 1.5, 1.5);
+        right = leave_ball(lab, k == 0 ? "a ball on a floor's diagonal" : "a ball on a floor", 1, &at[k],
+                           1e-13, 1e-3) &&
+                right;
+    }
+    return right;
+}
+
+/* By less than a float can place it: the floor is met in a circle. */
+static bool ball_that_dips(const Lab *lab) {
+    const double u[3] = {900, 0, 0}, v[3] = {0, 900, 0}, at[1][3] = {{100, 40, -7}};
+    add_face(at[0], u, v);
+    put_ball(100, 40, -7 + 1.5, 1.5);
+    ball.radius = 1.5 + 0x1p-22;
+    const double circle = sqrt(ball.radius * ball.radius - 1.5 * 1.5) / ball.radius;
+    return leave_ball(lab, "a ball that dips into a floor", 1, at, circle, circle * (1 + 1e-9));
+}
+
+/* Three faces at right angles that lean, and a point on each that has whole numbers. */
+static bool ball_in_a_corner(const Lab *lab) {
+    static const double n[3][3] = {{1, 2, 2}, {2, 1, -2}, {2, -2, 1}};
+    const double corner[3] = {-60, 11, 35};
+    double at[3][3];
+    put_ball(corner[0] + 5, corner[1] + 1, corner[2] + 1, 3);
+    for (int f = 0; f < 3; ++f) {
+        double u[3], v[3], middle[3];
+        for (int a = 0; a < 3; ++a) {
+            at[f][a] = ball.center[a] - n[f][a];
+            u[a] = 2 * n[(f + 1) % 3][a];
+            v[a] = 2 * n[(f + 2) % 3][a];
+            middle[a] = corner[a] + u[a] + v[a];
+        }
+        add_face(middle, u, v);
+    }
+    return leave_ball(lab, "a ball in a corner", 3, (const double(*)[3])at, 1e-13, 1e-3);
+}
+
 int main(int argc, char **argv) {
     static bool (*const cases[])(const Lab *) = {small_from_afar,
                                                  far_from_the_camera,
@@ -438,7 +588,10 @@ int main(int argc, char **argv) {
                                                  concave_edge,
                                                  diagonal,
                                                  coplanar,
-                                                 duplicate};
+                                                 duplicate,
+                                                 ball_on_a_floor,
+                                                 ball_that_dips,
+                                                 ball_in_a_corner};
     Lab lab;
     int failed = 0;
     if (argc != 2) {
@@ -448,7 +601,7 @@ int main(int argc, char **argv) {
     if (!lab_open(&lab, argv[1])) return 77;
     fine = lab.real_double;
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c) {
-        triangle_count = 0;
+        triangle_count = ball_count = 0;
         for (size_t i = 0; i < 3 * RAYS; ++i) directions[i] = i % 3 == 2 ? 1 : 0;
         if (!cases[c](&lab)) {
             printf("  WRONG\n");

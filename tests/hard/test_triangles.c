@@ -247,7 +247,7 @@ static void run(const Lab *lab, const Mesh *mesh, size_t wanted, uint64_t *rando
     double centre[3] = {0, 0, 0};
     for (size_t v = 0; v < mesh->vertex_count; ++v)
         for (int a = 0; a < 3; ++a) centre[a] += mesh->vertices[v][a] / (double)mesh->vertex_count;
-    BpWorker *worker = turns_worker(lab, mesh->triangles, mesh->face_count);
+    BpWorker *worker = turns_worker(lab, NULL, 0, mesh->triangles, mesh->face_count);
     for (int kind = 0; kind < KINDS; ++kind)
         for (size_t done = 0; done < wanted; done += BATCH) {
             for (size_t i = 0; i < BATCH; ++i) {

@@ -1,7 +1,8 @@
 /* turns.c: what turns.h promises. */
 #include "turns.h"
 
-BpWorker *turns_worker(const Lab *lab, const BpTriangle *triangles, size_t count) {
+BpWorker *turns_worker(const Lab *lab, const BpSphere *spheres, size_t sphere_count,
+                       const BpTriangle *triangles, size_t count) {
     BpMaterial matte = {.name = (char *)"matte", .kind = BP_MATERIAL_LAMBERTIAN, .albedo = {0.5, 0.5, 0.5}};
     BpScene scene = {.path = (char *)"",
                      .title = (char *)"",
@@ -9,6 +10,8 @@ BpWorker *turns_worker(const Lab *lab, const BpTriangle *triangles, size_t count
                      .notes = (char *)"",
                      .materials = &matte,
                      .material_count = 1,
+                     .spheres = (BpSphere *)(uintptr_t)spheres,
+                     .sphere_count = sphere_count,
                      .triangles = (BpTriangle *)(uintptr_t)triangles,
                      .triangle_count = count,
                      .implicit_material = SIZE_MAX};

@@ -1,6 +1,6 @@
-/* turns.h: what rays meet among triangles, and what they meet next when they leave it.
+/* turns.h: what rays meet among spheres and triangles, and what they meet next when they leave it.
  *
- * In:    triangles, rays, the directions in which they leave.   Out: TURN_REALS numbers a ray.
+ * In:    spheres, triangles, rays, the directions in which they leave.   Out: TURN_REALS numbers a ray.
  * Knows: lab.h, and where a line passes a triangle in 113 bits.   Does not know: which triangles and rays
  * matter. */
 #ifndef TESTS_HARD_TURNS_H
@@ -11,12 +11,13 @@
 
 #include "scene/scene.h"
 
-/* probe.cl has the same numbers. A triangle is its place in the list, -1: none. */
+/* probe.cl has the same numbers. A triangle is its place in the list, after all spheres, -1: none. */
 enum { TURN_REALS = 16, TURN_MET = 0, TURN_OUTSIDE, TURN_T, TURN_NEXT, TURN_NEXT_OUTSIDE, TURN_NEXT_T };
 enum { TURN_HIGH = 6, TURN_LOW = 9, TURN_ERROR = 12 };
 
-/* A worker for these triangles, which the caller keeps, seen from the origin. */
-BpWorker *turns_worker(const Lab *lab, const BpTriangle *triangles, size_t count);
+/* A worker for these shapes, which the caller keeps, seen from the origin. */
+BpWorker *turns_worker(const Lab *lab, const BpSphere *spheres, size_t sphere_count,
+                       const BpTriangle *triangles, size_t count);
 /* `directions`: 3 floats a ray, of any length near 1. */
 void turns_run(const Lab *lab, BpWorker *worker, size_t rays_count, const double *rays,
                const double *directions, double *out);
