@@ -37,10 +37,18 @@ def triangles(points, faces, material):
     return [{"vertices": [points[i] for i in face], "material": material} for face in faces]
 
 
-def ball(rounds):
-    """Points and faces of an octahedron, each face in four, `rounds` times, pushed out to the unit sphere; outward."""
-    points = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]
-    faces = [(x, y, z) if (x + y + z) % 2 == 0 else (x, z, y) for x in (0, 1) for y in (2, 3) for z in (4, 5)]
+OCTAHEDRON = ([1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1])
+OCTANTS = [(x, y, z) if (x + y + z) % 2 == 0 else (x, z, y) for x in (0, 1) for y in (2, 3) for z in (4, 5)]
+
+
+def turns_outward(a, b, c):
+    """Whether three points run counter-clockwise, seen from outside a ball around the origin."""
+    return sum(a[i] * (b[i - 2] * c[i - 1] - b[i - 1] * c[i - 2]) for i in range(3)) > 0
+
+
+def ball(rounds, points=OCTAHEDRON, faces=OCTANTS):
+    """Points and faces of a solid, each face in four, `rounds` times, pushed out to the unit sphere; outward."""
+    points = list(points)
     for _ in range(rounds):
         middles, finer = {}, []
 
@@ -251,6 +259,67 @@ class Optics(unittest.TestCase):
         for pixel in self.render(self.scene({"m": matte(0.9, 0.9, 0.9), "l": lamp}, look, {"background": [0, 0, 0]}, quads=wall), "--spp", "16"):
             self.assertTrue(all(math.isfinite(value) and 0 <= value <= 5 for value in pixel))
 
+    def received(self, lamp, material, camera):
+        """What the origin, which faces up, receives from a lamp of radiance 1 and nothing else, as a share of what a sky of 1 would bring."""
+        look = {"lookfrom": camera, "lookat": [0, 0, 0], "vfov": 1e-4, "max_depth": 2, "image_width": 16}
+        floor = quad([-0.1, 0, 0.1], [0.2, 0, 0], [0, 0, -0.2], "m")
+        return self.mean(self.scene({"m": material, "l": {"type": "diffuse_light", "emit": [1, 1, 1]}}, look, {"background": [0, 0, 0]},
+                                    triangles=[{"vertices": corners, "material": "l"} for corners in lamp], quads=[floor]), "--spp", "16384")
+
+    @staticmethod
+    def form_factor(triangle):
+        """From the origin, facing up: the sum over a polygon's edges of their angle and the height of their planes (Lambert, 1760)."""
+        total = 0
+        for k in range(3):
+            a, b = triangle[k], triangle[(k + 1) % 3]
+            cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+            total += math.atan2(math.hypot(*cross), sum(p * q for p, q in zip(a, b))) * cross[1] / math.hypot(*cross)
+        return abs(total) / (2 * math.pi)
+
+    def test_solid_angles(self):
+        """A lobe that scatters alike to all sides of a hemisphere finds a lamp by its solid angle: faces of a cube and of an icosahedron, from their middles."""
+        everywhere = {**matte(1, 1, 1), "scatter": "hemisphere"}
+        square = [[-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1]]
+        height = (3 + math.sqrt(5)) / (4 * math.sqrt(3))
+        face = [[math.cos(turn) / math.sqrt(3), height, math.sin(turn) / math.sqrt(3)] for turn in (0.3, 0.3 + 2 * math.pi / 3, 0.3 + 4 * math.pi / 3)]
+        for lamp, value in (([square[:3], [square[0], *square[2:]]], 2.094395), ([square[:3]], 1.047198), ([face], 0.628319)):
+            self.assertAlmostEqual(2 * math.pi * self.received(lamp, everywhere, [5, 0.1, 0.2]), value, delta=6e-4)
+
+    def test_square_lamp(self):
+        """Of side 1, above the middle at 1 and at 0.1, above a corner at 1, and at 0.01 over the plane in which it stands on its edge."""
+        def square(x, y, z):
+            return [[[x, y, z], [x + 1, y, z], [x + 1, y, z + 1]], [[x, y, z], [x + 1, y, z + 1], [x, y, z + 1]]]
+
+        upright = [[[-0.5, 0.5, 0.01], [0.5, 0.5, 0.01], [0.5, 1.5, 0.01]], [[-0.5, 0.5, 0.01], [0.5, 1.5, 0.01], [-0.5, 1.5, 0.01]]]
+        for lamp, value in ((square(-0.5, 1, -0.5), 0.239456), (square(-0.5, 0.1, -0.5), 0.968340), (square(0, 1, 0), 0.138532), (upright, None)):
+            expected = sum(self.form_factor(part) for part in lamp)
+            if value is not None:
+                self.assertAlmostEqual(expected, value, delta=1e-6)
+            self.assertAlmostEqual(self.received(lamp, matte(1, 1, 1), [4, 0.05, 0.1]), expected, delta=3e-4)
+
+    def test_cornell_floor(self):
+        """The middle of the floor of the Cornell box, by the light alone."""
+        light = quad([343, 554, 332], [-130, 0, 0], [0, 0, -105], "l")
+        floor = quad([0, 0, 0], [555, 0, 0], [0, 0, 555], "m")
+        look = {"lookfrom": [278, 278, -800], "lookat": [277.5, 0, 277.5], "vfov": 1e-4, "max_depth": 2, "image_width": 64}
+        mean = self.mean(self.scene({"m": matte(0.73, 0.73, 0.73), "l": {"type": "diffuse_light", "emit": [15, 15, 15]}}, look, {"background": [0, 0, 0]},
+                                    quads=[floor, light]), "--spp", "2048")
+        self.assertAlmostEqual(mean, 0.152701, delta=1e-3)
+
+    def test_touching_ball(self):
+        """A ball that stands on a triangle: into the ball, out of it at the point that they share, and then the triangle."""
+        for name, index in (("air", 1), ("g", 1.5)):
+            steps = self.steps(camera={"lookfrom": [0, 5, 0], "lookat": [0, 0, 0], "vup": [0, 0, 1]}, materials={name: glass(index, fresnel="none"), "m": matte(0.5, 0.5, 0.5)},
+                               spheres=[{"center": [0, 1, 0], "radius": 1, "material": name}], quads=[quad([-3, 0, 3], [6, 0, 0], [0, 0, -6], "m")])
+            self.assertEqual(self.met(steps)[:3], [(name, True), (name, False), ("m", True)])
+            self.assertEqual([step["origin"][1] for step in steps[:2]], [5, 2])
+        # What shines there is seen through the ball, in all forms of the kernel.
+        shining = self.scene({"air": glass(1, fresnel="none"), "l": {"type": "diffuse_light", "emit": [0.25, 0.5, 1]}},
+                             {"lookfrom": [0, 5, 0], "lookat": [0, 0, 0], "vup": [0, 0, 1], "image_width": 1, "pixel_sampling": "center"}, WHITE,
+                             spheres=[{"center": [0, 1, 0], "radius": 1, "material": "air"}], quads=[quad([-3, 0, 3], [6, 0, 0], [0, 0, -6], "l")])
+        for options in (("--kernel", "packet"), ("--kernel", "sample"), ("--kernel", "pool"), ("--precision", "double")):
+            self.assertEqual(self.render(shining, "--spp", "1", *options), [(0.25, 0.5, 1)], options)
+
     def test_ball_of_glass(self):
         """A ball of many triangles is the sphere: their means differ by less than 0.1 %."""
         look = {"lookfrom": [0.4, 0.3, 3], "lookat": [0, 0, 0], "vfov": 50, "max_depth": 30}
@@ -261,6 +330,29 @@ class Optics(unittest.TestCase):
         coarse = self.mean(self.scene(materials, look, triangles=triangles(*ball(0), "g")), "--spp", "256")
         self.assertAlmostEqual(mesh / sphere, 1, delta=1e-3)
         self.assertGreater(abs(coarse / sphere - 1), 2e-3)
+
+    def test_large_ball_of_glass(self):
+        """The same of 1.3 million triangles, from a file."""
+        golden = (1 + math.sqrt(5)) / 2
+        corners = [[0, x, z] for x in (-1, 1) for z in (-golden, golden)]
+        corners = [[corner[(axis + k) % 3] / math.hypot(1, golden) for k in range(3)] for axis in range(3) for corner in corners]
+
+        def near(a, b):
+            return math.dist(corners[a], corners[b]) < 1.1
+
+        sides = [(a, b, c) for a in range(12) for b in range(a) for c in range(b) if near(a, b) and near(b, c) and near(c, a)]
+        outward = [side if turns_outward(*(corners[k] for k in side)) else side[::-1] for side in sides]
+        points, faces = ball(8, corners, outward)
+        self.assertEqual(len(faces), 1310720)
+        head = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\nproperty float x\nproperty float y\nproperty float z\n"
+                f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
+        rows = b"".join(struct.pack("<B3i", 3, *face) for face in faces)
+        (self.path / "ball.ply").write_bytes(head.encode() + b"".join(struct.pack("<3f", *point) for point in points) + rows)
+        look = {"lookfrom": [0.4, 0.3, 3], "lookat": [0, 0, 0], "vfov": 50, "max_depth": 30}
+        materials = {"g": glass(1.5, fresnel="exact")}
+        mesh = self.mean(self.scene(materials, look, meshes=[{"file": "ball.ply", "material": "g"}]), "--spp", "256")
+        sphere = self.mean(self.scene(materials, look, spheres=[{"center": [0, 0, 0], "radius": 1, "material": "g"}]), "--spp", "256")
+        self.assertAlmostEqual(mesh / sphere, 1, delta=1e-3)
 
 
 if __name__ == "__main__":

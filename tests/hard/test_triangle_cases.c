@@ -4,7 +4,8 @@
  *
  * hard_triangles aims at the edges and vertices of closed meshes; these are what meshes seldom have:
  * triangles that are far, tiny, huge, thin, seen from their edge or in one place, rays along the axes, and
- * balls that lie on triangles. Exit code 1: one of them has another value. */
+ * balls that lie on triangles. test_triangle_list.py has all hard cases of triangles, and where each is
+ * tested. Exit code 1: one of them has another value. */
 #include "turns.h"
 
 #include <stdio.h>
@@ -191,6 +192,65 @@ static bool leaning_ground(const Lab *lab) {
     printf("%s, a ground of 2e6 that leans: %zu hits, %zu off the plane, at most %.2g\n", lab->name, met, off,
            (double)worst);
     return off == 0 && met > RAYS / 2;
+}
+
+/* Points of slivers and of common triangles, of 1e-3 to 1e6 and up to a million sizes from the origin, lie in
+ * their planes but for 2^-45 of their place and of the longest edge; of the edge 2^-42 in pairs of floats. */
+static bool on_their_planes(const Lab *lab) {
+    enum { SHAPES = 40 };
+    Wide worst = 0;
+    size_t met = 0;
+    for (int shape = 0; shape < SHAPES; ++shape) {
+        const double size = pow(10, between(-3, 6)), width = shape % 2 == 0 ? size : 1e-3 * size;
+        const double far = size * pow(10, between(-1, 6));
+        double way[3], corner[3][3];
+        lab_direction(&state, way);
+        if (far > 1e9) continue;
+        for (int a = 0; a < 3; ++a) {
+            corner[0][a] = way[a] * far;
+            corner[1][a] = corner[0][a] + size * between(-1, 1);
+            corner[2][a] = corner[0][a] + width * between(-1, 1);
+        }
+        triangle_count = 0;
+        add(corner[0][0], corner[0][1], corner[0][2], corner[1][0], corner[1][1], corner[1][2], corner[2][0],
+            corner[2][1], corner[2][2]);
+        const double(*v)[3] = (const double(*)[3])triangles[0].vertices;
+        Wide u[3], w[3], n[3], edge = 0;
+        for (int a = 0; a < 3; ++a)
+            u[a] = (Wide)v[1][a] - (Wide)v[0][a], w[a] = (Wide)v[2][a] - (Wide)v[0][a];
+        for (int a = 0; a < 3; ++a) n[a] = u[(a + 1) % 3] * w[(a + 2) % 3] - u[(a + 2) % 3] * w[(a + 1) % 3];
+        const Wide length = wide_sqrt(wide_dot(n, n));
+        if (length == 0) continue; /* as floats, so far away, without an area */
+        for (int k = 0; k < 3; ++k) {
+            Wide side[3];
+            for (int a = 0; a < 3; ++a) side[a] = (Wide)v[(k + 1) % 3][a] - (Wide)v[k][a];
+            const Wide longer = wide_sqrt(wide_dot(side, side));
+            edge = longer > edge ? longer : edge;
+        }
+        for (size_t i = 0; i < RAYS; ++i) {
+            double from[3];
+            lab_direction(&state, from);
+            for (int a = 0; a < 3; ++a) from[a] = corner[0][a] + from[a] * size * between(0.1, 3);
+            aim_at_triangle(rays + i * RAY_REALS, from, 0);
+        }
+        run(lab);
+        for (size_t i = 0; i < RAYS; ++i) {
+            const double *row = out + i * TURN_REALS;
+            if (row[TURN_MET] < 0) continue;
+            Wide height = 0, size_of_point = 0;
+            for (int a = 0; a < 3; ++a) {
+                const Wide place = (Wide)row[TURN_HIGH + a] + (Wide)row[TURN_LOW + a];
+                height += (place - (Wide)v[0][a]) * n[a] / length;
+                size_of_point += wide_abs(place);
+            }
+            const Wide bound = 0x1p-45 * size_of_point + (lab->refined_double ? 0x1p-45 : 0x1p-42) * edge;
+            const Wide used = wide_abs(height) / bound;
+            ++met;
+            worst = used > worst ? used : worst;
+        }
+    }
+    printf("%s, points on their planes: %zu hits, %.2g of the bound used\n", lab->name, met, (double)worst);
+    return worst <= 1 && met > RAYS;
 }
 
 /* Rays in the plane of a triangle, some of them through it. */
@@ -577,6 +637,7 @@ int main(int argc, char **argv) {
                                                  far_from_the_camera,
                                                  ground,
                                                  leaning_ground,
+                                                 on_their_planes,
                                                  in_its_plane,
                                                  grazing,
                                                  sliver,

@@ -1742,6 +1742,20 @@ MUTANTS = [
            [patch(KERNEL, "return scale3(fma(excess, splat(R(-0.5)), splat(1)), unit);", "return part;")], [triangles("prism")]),
     Mutant("a point on a triangle in float", "triangles: its low part left out",
            [patch("kernels/shape/wide.cl", "*low = to_real(a - to_refined(*high));", "*low = splat(0);")], [edges_and_turns("double")]),
+    Mutant("one triangle is sheared by a rounded slope", "triangles: a vertex at two places in the ray's plane",
+           [patch(KERNEL, "const Wide x = wide_divide(wide(-shear->direction.x), edges.slope), y = wide_divide(wide(-shear->direction.y), edges.slope);",
+                  "const vbool other = a.x < b.x;\n    const Wide divided = wide_divide(splat(1), shear->direction.z);\n"
+                  "    const Wide x = wide_choose(other, wide_multiply(wide(-shear->direction.x), wide(wide_near(divided))), wide_divide(wide(-shear->direction.x), edges.slope)),\n"
+                  "               y = wide_choose(other, wide_multiply(wide(-shear->direction.y), wide(wide_near(divided))), wide_divide(wide(-shear->direction.y), edges.slope));")],
+           [edges_and_turns("double")]),
+    Mutant("a point on a triangle along the ray, in float", "classic: origin + t * direction",
+           [patch("kernels/bvh/hit.cl", "    triangle_surface(ray, &triangle, &place, &outward);",
+                  "    triangle_surface(ray, &triangle, &place, &outward);\n"
+                  "    place.high = madd3(to_real(hit->t), ray->direction, ray->origin.high);\n    place.low = zero3();")],
+           [triangle_cases()]),
+    Mutant("a point's error in double, of pairs of floats", "triangles: the bound without a device's arithmetic",
+           [patch("kernels/shape/wide.cl", "#define WIDE_POINT_ERROR R(0x1p-42)", "#define WIDE_POINT_ERROR R(0x1p-60)")],
+           [triangle_cases("float")]),
     Mutant("a point's error without the edges", "triangles: the bound by the distance alone",
            [patch(KERNEL, "point->error = fma(one_norm(to_b) + one_norm(to_c), splat(WIDE_POINT_ERROR), size * R(0x1p-45));",
                   "point->error = size * R(0x1p-45);")], [triangle_cases()]),
