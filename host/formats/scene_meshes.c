@@ -93,17 +93,6 @@ static BpStatus parse_materials(const BpNode *node, const BpMaterialIndex *index
 
 /* ---- a mesh ---- */
 
-/* Errors in opening the file stand in the document. */
-static BpStatus check_file(const BpNode *file_node, const char *path, BpError *err) {
-    FILE *stream = NULL;
-    uint64_t size = 0;
-    if (file_node->document->held != NULL)
-        return bp_node_fail(file_node, BP_PART_VALUE, err, "it is not among the files of this program");
-    BP_TRY(bp_node_open_file(file_node, path, "a file of a mesh", &stream, &size, err));
-    fclose(stream);
-    return BP_OK;
-}
-
 static BpStatus add_mesh(const BpNode *materials, const BpMaterialIndex *index, BpMesh *mesh, BpMeshUse *use,
                          BpScene *scene, BpError *err) {
     uint32_t *const own = malloc((mesh->material_count + 1) * sizeof *own);
@@ -120,12 +109,15 @@ static BpStatus read_mesh(const BpNode *node, const BpMaterialIndex *index, BpMe
                           const BpSceneChanges *changes, BpScene *scene, BpError *err) {
     const BpNode file_node = bp_node_member(node, "file"), materials = bp_node_member(node, "materials");
     const size_t first = scene->triangle_count;
+    FILE *stream = NULL;
+    uint64_t size = 0;
     BpMesh mesh = {0};
     char *const path = bp_path_beside(file_node.document->name, use->name);
     if (path == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a path");
-    BpStatus status = check_file(&file_node, path, err);
+    BpStatus status = bp_node_open_file(&file_node, path, "a file of a mesh", &stream, &size, err);
     if (status == BP_OK) {
-        status = bp_mesh_read(path, &mesh, err);
+        status = bp_mesh_read_stream(stream, path, &mesh, err);
+        fclose(stream);
         if (status == BP_ERR_SCENE && err != NULL && (changes->flags & BP_PARSE_MADE) == 0)
             bp_name_document(&file_node, "a mesh", err);
     }

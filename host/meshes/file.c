@@ -124,28 +124,29 @@ static BpStatus read_input(Input *input, const char *path, BpMesh *mesh, BpError
     return status;
 }
 
-BpStatus bp_mesh_read(const char *path, BpMesh *mesh, BpError *err) {
-    FILE *stream = NULL;
-    uint64_t size = 0;
+BpStatus bp_mesh_read_stream(FILE *stream, const char *path, BpMesh *mesh, BpError *err) {
     Input input = {0};
     *mesh = (BpMesh){0};
-    BP_TRY(bp_file_open(path, false, "a file of a mesh", &stream, &size, err));
     /* Numbers have a point, whatever the caller's locale. */
     const locale_t point = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
-    BpStatus status = BP_OK;
-    if (point == (locale_t)0) {
-        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a locale");
-        goto done;
-    }
+    if (point == (locale_t)0) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a locale");
     const locale_t before = uselocale(point);
-    status = input_init(&input, stream, path, err);
+    BpStatus status = input_init(&input, stream, path, err);
     if (status == BP_OK) status = read_input(&input, path, mesh, err);
     input_clear(&input);
     uselocale(before);
     freelocale(point);
-done:
-    fclose(stream);
     if (status != BP_OK) bp_mesh_clear(mesh);
+    return status;
+}
+
+BpStatus bp_mesh_read(const char *path, BpMesh *mesh, BpError *err) {
+    FILE *stream = NULL;
+    uint64_t size = 0;
+    *mesh = (BpMesh){0};
+    BP_TRY(bp_file_open(path, false, "a file of a mesh", &stream, &size, err));
+    const BpStatus status = bp_mesh_read_stream(stream, path, mesh, err);
+    fclose(stream);
     return status;
 }
 

@@ -1,7 +1,8 @@
 /* mesh.h: files of meshes, and the one form in which all of them are handed over.
  *
- * In:    a path.   Out: vertices, triangles, their materials and colours; the first edge that is not closed.
- * Knows: which formats there are.   Does not know: scenes, how a mesh is placed and traced.
+ * In:    a path, or an open file.   Out: vertices, triangles, their materials and colours; the first edge
+ * that is not closed. Knows: which formats there are.   Does not know: scenes, how a mesh is placed and
+ * traced.
  *
  * Formats: PLY with faces, OBJ with MTL, STL, OFF; each also packed by gzip. Nothing in a file is trusted:
  * memory grows with what was read and never with what a count promises, and every error names the file, and
@@ -13,6 +14,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 /* At most so many vertices, and as many triangles. */
 #define BP_MESH_COUNT_MAX 134217728u
@@ -58,6 +60,8 @@ bool bp_mesh_is_file(const char *path);
  * ear clipping. Fails with BP_ERR_SCENE on what is damaged or unsupported, with file and line. May be called
  * by several threads at once. */
 BpStatus bp_mesh_read(const char *path, BpMesh *mesh, BpError *err);
+/* The same of an open file with a descriptor, which stays open; `path` names it and tells its format. */
+BpStatus bp_mesh_read_stream(FILE *stream, const char *path, BpMesh *mesh, BpError *err);
 void bp_mesh_clear(BpMesh *mesh);
 
 typedef enum BpMeshEdgeFault {
