@@ -4,7 +4,7 @@
  * In:    the packed scene; a range of pixels; a range of samples, whose camera rays are those of the render.
  * Out:   for each pixel AOV_FLOATS sums over its samples, in the places that aov_list.h gives them. A ray that meets
  *        nothing adds nothing.
- * Knows: aov_list.h, path.cl, fetch_surface.cl.   Does not know: how paths continue. */
+ * Knows: aov_list.h, path.cl, vertex.cl.   Does not know: how paths continue. */
 
 /* One work-item a pixel; as many of its samples at a time as there are lanes. */
 __kernel VECTORS_WRITTEN void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel_count, uint first_sample,
@@ -29,30 +29,16 @@ __kernel VECTORS_WRITTEN void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel
         const vbool met = path.alive & is_hit(&hit);
         if (!any_lane(met)) continue;
 
-#if SPHERES_MET
-        Sphere sphere;
-#endif
-        Surface surface;
-        Vec3 outward, emitted;
-        Point point;
-        fetch_surface(&scene, &ray, &hit, WITH_SPHERE(&sphere) &surface, &emitted);
-#if SPHERES_MET
-        sphere_surface(&ray, &sphere, hit.slot, hit.t, hit.enters, &point, &outward);
-#endif
-#if EFFECT_TRIANGLES
-        surface_of_triangle(&scene.geometry, &ray, &hit, met, &point, &outward);
-#endif
-#if EFFECT_TEXTURES
-        vary_surface(&scene, met, hit.slot, &point, outward, &surface, &emitted);
-#endif
-        const Vec3 normal = choose3(hit.enters, outward, scale3(splat(-1), outward));
+        Vertex vertex;
+        vertex_init(&scene, &ray, &hit, met, &vertex);
+        const Vec3 normal = vertex.surface.normal, albedo = vertex.surface.albedo;
         const vreal values[AOV_FLOATS] = {
             /* along `forward_x, forward_y, forward_z`, from the camera */
-            [AOV_DEPTH] = dot3(point.high, forward),
+            [AOV_DEPTH] = dot3(vertex.point.high, forward),
             /* unit, towards where the ray came from */
             [AOV_NORMAL] = normal.x, normal.y, normal.z,
             /* what the surface scatters: its colour, 1 for a dielectric, 0 for a lamp */
-            [AOV_ALBEDO] = surface.albedo.x, surface.albedo.y, surface.albedo.z,
+            [AOV_ALBEDO] = albedo.x, albedo.y, albedo.z,
             [AOV_MET] = splat(1)};
         for (uint i = 0; i < AOV_FLOATS; ++i) {
             LaneReals lanes;

@@ -69,7 +69,7 @@ __kernel VECTORS_WRITTEN void path_log(SCENE_PARAMETERS uint pixel, uint sample,
             seen = path.seen_slot >= DISC_SLOT ? path.seen_slot : *place_in(scene.geometry.slot_sphere, path.seen_slot);
         }
 #endif
-        record[LOG_DISTANCE] = (real)path.distance;
+        record[LOG_DISTANCE] = (real)path.latest.distance;
         record[LOG_POINT] = path.origin.high.x;
         record[LOG_POINT + 1] = path.origin.high.y;
         record[LOG_POINT + 2] = path.origin.high.z;
@@ -79,14 +79,9 @@ __kernel VECTORS_WRITTEN void path_log(SCENE_PARAMETERS uint pixel, uint sample,
         record[LOG_RADIANCE] = path.radiance.x;
         record[LOG_RADIANCE + 1] = path.radiance.y;
         record[LOG_RADIANCE + 2] = path.radiance.z;
-        record[LOG_MET] = path.met;
-#if EFFECT_MEDIA
-        if (path.scattered) record[LOG_MET] = 2;
-#endif
-#if EFFECT_SHADOW_CATCHER
-        if (path.caught) record[LOG_MET] = path.dark ? 3 : 4;
-#endif
-        record[LOG_ENTERS] = path.entered;
+        const Segment *end = &path.latest;
+        record[LOG_MET] = end->scattered ? 2 : end->caught ? (end->dark ? 3 : 4) : end->met;
+        record[LOG_ENTERS] = end->entered;
         record[LOG_GOES_ON] = path.alive;
         record[LOG_INWARD] = path.inward;
         record[LOG_LIT] = path.radiance.x - led.x;
@@ -97,9 +92,9 @@ __kernel VECTORS_WRITTEN void path_log(SCENE_PARAMETERS uint pixel, uint sample,
         record[LOG_LED + 2] = led.z - before.z;
         uint discs = 0;
 #if EFFECT_DISCS
-        if (!path.met) discs = discs_seen(&scene, &path);
+        if (!end->met) discs = discs_seen(&scene, &path);
 #endif
-        spheres[4 * step] = path.met ? *place_in(scene.geometry.slot_sphere, path.own_slot) : NO_SPHERE;
+        spheres[4 * step] = end->met ? *place_in(scene.geometry.slot_sphere, path.own_slot) : NO_SPHERE;
         spheres[4 * step + 1] = lamp;
         spheres[4 * step + 2] = seen;
         spheres[4 * step + 3] = discs;

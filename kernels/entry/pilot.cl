@@ -40,14 +40,6 @@ static vbool stands_lit(const Path *path, vbool moving) {
 #define PILOT_ALWAYS (PILOT_TRACED | PILOT_UNTOLD)
 #endif
 
-static vbool ends_in_medium(const Path *path, vbool moving) {
-#if EFFECT_MEDIA
-    return moving & path->scattered;
-#else
-    return vbool_none;
-#endif
-}
-
 /* One segment of one lane. */
 static void store_segment(const LaneReals *values, uint lane, __global real *records) {
     for (uint i = 0; i < (uint)PILOT_REALS; ++i) records[i] = values[i].of[lane];
@@ -82,8 +74,8 @@ __kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segme
 #if SAMPLES_LAMPS
         path.wants_lamps = vbool_none;
 #endif
-        const vbool scattered = ends_in_medium(&path, moving);
-        const vbool met = moving & path.met;
+        const vbool scattered = moving & path.latest.scattered;
+        const vbool met = moving & path.latest.met;
         const vbool lit = stands_lit(&path, met | scattered);
         const LaneReals values[PILOT_REALS] = {
             [PILOT_POINT].all = path.origin.high.x,
@@ -92,7 +84,7 @@ __kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segme
             [PILOT_DIRECTION].all = direction.x,
             [PILOT_DIRECTION + 1].all = direction.y,
             [PILOT_DIRECTION + 2].all = direction.z,
-            [PILOT_DISTANCE].all = to_real(path.distance),
+            [PILOT_DISTANCE].all = to_real(path.latest.distance),
             [PILOT_THROUGHPUT].all = path.throughput.x,
             [PILOT_THROUGHPUT + 1].all = path.throughput.y,
             [PILOT_THROUGHPUT + 2].all = path.throughput.z,

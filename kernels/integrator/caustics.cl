@@ -335,5 +335,7 @@ static void light_camera(const Scene *scene, Path *path, vbool fresh) {
     light_through_focuser(scene, path, splat_uint(DIMENSION_PIXEL), 1, fresh);
 }
 #else
+#define follow_chain(scene, path, met, hit, bsdf_sample)
+#define chain_hit_weight(scene, path, lamp, hit) splat(1)
 #define light_camera(scene, path, fresh)
 #endif

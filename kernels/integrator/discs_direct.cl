@@ -29,14 +29,18 @@ static Vec3 discs_radiance(const Scene *scene, const Path *path, vbool escaped) 
         Vec3 radiance = splat3(disc + DISC_RADIANCE);
 #if SAMPLES_DISCS
         radiance = scale3(disc_hit_weight(path, disc, hit), radiance);
-#if SAMPLES_CAUSTICS
         radiance = scale3(chain_hit_weight(scene, path, splat_uint(DISC_SLOT + i), hit), radiance);
-#endif
 #endif
         sum = choose3(hit, add3(sum, radiance), sum);
     }
     return sum;
 }
+
+static void see_discs(const Scene *scene, const Path *path, vbool escaped, Vec3 *light) {
+    *light = add3(*light, multiply3(path->throughput, discs_radiance(scene, path, escaped)));
+}
+#else
+#define see_discs(scene, path, escaped, light)
 #endif
 
 #if EFFECT_ENVIRONMENT
@@ -64,4 +68,11 @@ static Vec3 environment_light(const Scene *scene, const Path *path, vbool escape
     return radiance;
 #endif
 }
+
+/* In place of what lies behind it. */
+static void see_environment(const Scene *scene, const Path *path, vbool escaped, Vec3 *light) {
+    if (has_environment(scene->sky)) *light = multiply3(path->throughput, environment_light(scene, path, escaped));
+}
+#else
+#define see_environment(scene, path, escaped, light)
 #endif

@@ -14,7 +14,8 @@
 #if EFFECT_SHADOW_CATCHER
 #define CATCHER_TRIES 64u
 
-/* The lanes of `moving` whose path is a camera ray that meets the upper side of the plane before `hit`, `distance` ahead. */
+/* The lanes of `moving` whose path is a camera ray that meets the upper side of the plane before `hit`; there `distance` becomes
+ * how far it is. */
 static vbool meets_catcher(const Scene *scene, const Path *path, const Hit *hit, vbool moving, vreal *distance) {
     const Vec3 up = splat3(scene->sky->catcher);
     const vreal above = dot3(path->origin.high, up) - splat(scene->sky->catcher[3]);
@@ -23,9 +24,11 @@ static vbool meets_catcher(const Scene *scene, const Path *path, const Hit *hit,
     const vbool ahead = moving & vbool_of_uint(path->depth == splat_uint(0)) & (down > splat(0)) &
                         (fma(splat(scene->sky->catcher_light[3]), down, above) > splat(0)) &
                         (down * splat(R(0x1p80)) > fabs(above));
-    *distance = divide(above, choose(ahead, down, splat(1)));
-    const vbool behind = vbool_of_refined(hit->t < to_refined(*distance)) & is_hit(hit);
-    return ahead & vbool_not(behind);
+    const vreal to_plane = divide(above, choose(ahead, down, splat(1)));
+    const vbool behind = vbool_of_refined(hit->t < to_refined(to_plane)) & is_hit(hit);
+    const vbool at_catcher = ahead & vbool_not(behind);
+    *distance = choose(at_catcher, to_plane, *distance);
+    return at_catcher;
 }
 
 /* A unit direction, uniform over the cap of a disc. */
@@ -77,6 +80,7 @@ static vbool light_of_catcher(const Scene *scene, SampleKey key, vbool wanted, V
 
 /* The lanes of `caught`, whose path meets the plane at `distance`, where it lies in shadow. */
 static vbool lies_in_shadow(const Scene *scene, const Path *path, vbool caught, vreal distance) {
+    if (!any_lane(caught)) return vbool_none;
     Ray ray = path_ray(path);
     const vbool lit = light_of_catcher(scene, path->key, caught, &ray.direction);
     if (!any_lane(lit)) return vbool_none;
@@ -87,4 +91,7 @@ static vbool lies_in_shadow(const Scene *scene, const Path *path, vbool caught, 
     const Hit hit = intersect_closest(&scene->geometry, &ray, lit);
     return lit & is_hit(&hit);
 }
+#else
+#define meets_catcher(scene, path, hit, moving, distance) vbool_none
+#define lies_in_shadow(scene, path, caught, distance) vbool_none
 #endif

@@ -55,4 +55,6 @@ static void vary_surface(const Scene *scene, vbool met, vuint slot, const Point 
         if (member == VARIATION_EMIT) *emitted = choose3(varies, value, *emitted);
     }
 }
+#else
+#define vary_surface(scene, met, slot, point, outward, surface, emitted)
 #endif

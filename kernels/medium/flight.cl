@@ -90,38 +90,28 @@ static vbool fly(const Scene *scene, vbool moving, vreal distance, Path *path, v
     return scattered;
 }
 
-/* The lanes `scattered` continue from where the medium has scattered them, `length` ahead. Which medium that is will be asked
- * again, since it costs little, and rounding may have put the point past a boundary. */
-static void scatter_in_medium(const Scene *scene, vbool scattered, vreal length, Path *path) {
+/* The lanes whose latest segment ended in a medium continue from there. Which medium that is will be looked up again, since it
+ * costs little, and rounding may have put the point past a boundary. */
+static void scatter_in_medium(const Scene *scene, Path *path) {
+    const vbool scattered = path->latest.scattered;
+    if (!any_lane(scattered)) return;
     const vuint first = first_dimension(path->depth - 1u);
     const vreal g = gather_real(scene->media, choose_uint(scattered, path->medium, splat_uint(0)) * MEDIUM_REALS + MEDIUM_ANISOTROPY);
     vreal u, v;
     sample_2d(path->key, first + BOUNCE_DIRECTION, &u, &v);
-    path->origin = point_ahead(path, scattered, length);
+    path->origin = point_ahead(path, scattered, to_real(path->latest.distance));
     path->own_slot = choose_uint(scattered, splat_uint(NO_SLOT), path->own_slot);
     path->inward = path->inward & vbool_not(scattered);
-#if SAMPLES_LAMPS
-    Lobe lobe;
-    lobe.axis = path->direction;
-#if EFFECT_METAL
-    lobe.normal = path->direction;
-#endif
-#if LOBES_OF_TWO_DIRECTIONS
-    lobe.outgoing = path->direction;
-#endif
-#if WEIGHTED_LOBES
-    lobe.albedo = path->throughput; /* of no use: its weight is the same in all directions */
-#endif
-#if EFFECT_GLOSSY
-    lobe.refraction_index = lobe.lets_in = splat(1);
-#elif EFFECT_ROUGH_DIELECTRIC
-    lobe.refraction_index = splat(1);
-#endif
-    lobe.fuzz = g;
-    lobe.kind = splat_uint(LOBE_PHASE);
-    path_light(path, scattered, &lobe, vbool_of_uint(path->depth + 1u <= splat_uint(scene->max_depth)));
-#endif
+    path_light_in_medium(path, scattered, g, scene->max_depth);
     path->direction = choose3(scattered, phase_direction(path->direction, g, u, v), path->direction);
     path->unsure = path->unsure | scattered;
 }
+
+/* Of what a camera ray shows. */
+#define seen_through(path, radiance) multiply3((path)->throughput, radiance)
+#else
+#define find_media(scene, ray, moving, path)
+#define fly(scene, moving, distance, path, length) vbool_none
+#define scatter_in_medium(scene, path)
+#define seen_through(path, radiance) (radiance)
 #endif

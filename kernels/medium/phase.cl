@@ -1,7 +1,7 @@
 /* phase.cl: the direction in which a medium scatters: L. Henyey and J. Greenstein, "Diffuse radiation in the galaxy", 1941.
  *
- * In:    the direction of a path, the mean cosine g, two numbers in [0, 1).   Out: the direction after.
- * Knows: warps.cl.   Does not know: media, paths. */
+ * In:    the direction of a path, the mean cosine g, two numbers in [0, 1).   Out: the direction after, its density, and its lobe.
+ * Knows: warps.cl, bsdf.cl's Lobe.   Does not know: media, paths. */
 #if EFFECT_MEDIA
 /* 1 + c and 1 - c for a cosine c to the direction before, of the density (1 - g^2) / (2 (1 + g^2 - 2 g c)^(3/2)), by
  * inversion, as two products in which nothing cancels, so that narrow peaks keep their shape; nothing is divided by g. */
@@ -44,4 +44,28 @@ static Vec3 phase_direction(Vec3 before, vreal g, vreal u, vreal v) {
     const Vec3 t = vec3(b, fma(before.y * before.y, a, sign), -before.y);
     return normalise3(madd3(cosine, before, madd3(along, s, scale3(across, t))));
 }
+
+#if SAMPLES_LAMPS
+static Lobe phase_lobe(Vec3 before, vreal g) {
+    Lobe lobe;
+    lobe.axis = before;
+#if EFFECT_METAL
+    lobe.normal = before;
+#endif
+#if LOBES_OF_TWO_DIRECTIONS
+    lobe.outgoing = before;
+#endif
+#if WEIGHTED_LOBES
+    lobe.albedo = before; /* of no use: its weight is the same in all directions */
+#endif
+#if EFFECT_GLOSSY
+    lobe.refraction_index = lobe.lets_in = splat(1);
+#elif EFFECT_ROUGH_DIELECTRIC
+    lobe.refraction_index = splat(1);
+#endif
+    lobe.fuzz = g;
+    lobe.kind = splat_uint(LOBE_PHASE);
+    return lobe;
+}
+#endif
 #endif

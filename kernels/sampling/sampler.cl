@@ -69,6 +69,18 @@ static SampleKey sample_key(uint seed_low, uint seed_high, vuint pixel, vuint sa
     return key;
 }
 
+static SampleKey choose_key(vbool mask, SampleKey a, SampleKey b) {
+    SampleKey chosen;
+    chosen.a = choose_uint(mask, a.a, b.a);
+    chosen.b = choose_uint(mask, a.b, b.b);
+#if SAMPLER_SOBOL
+    chosen.index_reversed = choose_uint(mask, a.index_reversed, b.index_reversed);
+    chosen.scramble_a = choose_uint(mask, a.scramble_a, b.scramble_a);
+    chosen.scramble_b = choose_uint(mask, a.scramble_b, b.scramble_b);
+#endif
+    return chosen;
+}
+
 static vreal sample_1d(SampleKey key, vuint dimension) {
     vreal u = uniform(key, dimension);
 #if SAMPLER_SOBOL

@@ -57,7 +57,7 @@ SHARED = {
     "fresnel_exact": {"DIELECTRIC", "GLOSSY", "ROUGH_DIELECTRIC"},
     "surface->refraction_index = ": {"DIELECTRIC", "GLOSSY", "ROUGH_DIELECTRIC"},
     "smith_root": {"ROUGH_METAL", "GLOSSY", "ROUGH_DIELECTRIC"},
-    "throughput, emitted": {"EMISSION", "NORMALS"},
+    "throughput, vertex->emitted": {"EMISSION", "NORMALS"},
     "turn_of": {"TEXTURES", "ENVIRONMENT"},
 }
 # Code that needs all of these.
