@@ -229,11 +229,62 @@ static void no_area(void **unused) {
     bp_mesh_clear(&mesh);
 }
 
+static void strips(void **unused) {
+    (void)unused;
+    static const char head[] = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+                               "property float z\nelement tristrips 1\nproperty list int int vertex_indices\n"
+                               "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 1\n";
+    char text[512];
+    snprintf(text, sizeof text, "%s10 0 1 2 3 4 -1 2 3 3 4\n", head);
+    BpMesh mesh = read_text("a.ply", text);
+    assert_int_equal(mesh.face_count, 3);
+    check_face(&mesh, 0, 0, 1, 2);
+    check_face(&mesh, 1, 2, 1, 3);
+    check_face(&mesh, 2, 2, 3, 4);
+    assert_int_equal(mesh.dropped_degenerate, 0);
+    bp_mesh_clear(&mesh);
+}
+
+/* A square, and a corner above one of its edges: seen from above, the triangle at that edge has no area. */
+static void corners_in_no_plane(void **unused) {
+    (void)unused;
+    BpMesh mesh = read_text("a.obj", "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nv 0 1 -1\nf 1 2 3 4 5\n");
+    assert_int_equal(mesh.face_count, 3);
+    assert_int_equal(mesh.dropped_degenerate, 0);
+    bp_mesh_clear(&mesh);
+    /* It crosses itself, seen along x, and along y it does not. */
+    mesh = read_text("a.obj", "v 11.424191 227.11412 46.411819\nv 11.773045 227.911987 46.302418\n"
+                              "v 11.707062 227.626556 46.342155\nv 11.41707 226.8853 46.168762\nf 1 2 3 4\n");
+    assert_int_equal(mesh.face_count, 2);
+    assert_string_equal(mesh.notes, "");
+    bp_mesh_clear(&mesh);
+}
+
+static void colors_that_are_missing(void **unused) {
+    (void)unused;
+    const double grey = 0.3139887; /* 152 of 255, in sRGB */
+    BpMesh mesh =
+        read_text("a.obj", "v 0 0 0\nv 1 0 0 1 0 0\nv 0 1 0 0.5 nan 0\nv 1 1 0\nf 1 2 3\nf 2 3 4\n");
+    assert_non_null(mesh.vertex_colors);
+    check_color(mesh.vertex_colors[0], grey, grey, grey);
+    check_color(mesh.vertex_colors[1], 1, 0, 0);
+    check_color(mesh.vertex_colors[2], grey, grey, grey);
+    check_color(mesh.vertex_colors[3], grey, grey, grey);
+    assert_non_null(strstr(mesh.notes, "3 of 4 vertices"));
+    bp_mesh_clear(&mesh);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(obj_numbers), cmocka_unit_test(obj_materials),
-                                       cmocka_unit_test(ply_lists),   cmocka_unit_test(stl_welds),
-                                       cmocka_unit_test(off_colors),  cmocka_unit_test(edges),
-                                       cmocka_unit_test(no_area)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(obj_numbers),
+                                       cmocka_unit_test(obj_materials),
+                                       cmocka_unit_test(ply_lists),
+                                       cmocka_unit_test(stl_welds),
+                                       cmocka_unit_test(off_colors),
+                                       cmocka_unit_test(edges),
+                                       cmocka_unit_test(no_area),
+                                       cmocka_unit_test(strips),
+                                       cmocka_unit_test(corners_in_no_plane),
+                                       cmocka_unit_test(colors_that_are_missing)};
     if (mkdtemp(folder) == NULL) return 1;
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     rmdir(folder);
