@@ -18,7 +18,6 @@ typedef enum BpFileKind {
     BP_FILE_PARTICLES, /* of other programs: trajectories, crystals */
     BP_FILE_POINTS,    /* of other programs: clouds and tables */
     BP_FILE_MESH,      /* that this program reads, from a file of its name */
-    BP_FILE_WORLD,     /* scenes of other programs */
     BP_FILE_SOURCE     /* of a program */
 } BpFileKind;
 
@@ -27,9 +26,9 @@ typedef struct BpKnownFile {
     const char *what; /* "a PNG picture"; static */
 } BpKnownFile;
 
-/* Whether it is one of them. `name` may be a path, or no name of a file at all. More than the first 4 KiB
- * make no difference; `size` is that of the whole file. */
-bool bp_known_file(const char *name, const char *bytes, size_t length, size_t size, BpKnownFile *found);
+/* Whether it is one of them, by its first bytes or by its name, which may be a path or the name of nothing.
+ */
+bool bp_known_file(const char *name, const char *bytes, size_t length, BpKnownFile *found);
 
 /* Advice on such a file where a scene was expected: "; ..." or "". Static. */
 const char *bp_known_file_remedy(const BpKnownFile *file);

@@ -58,8 +58,9 @@ static BpStatus fail_syntax(const BpDocument *document, const json_error_t *erro
     const size_t at = bp_json_error_place(document->text, document->length, error);
     const char *const rest = document->text + at;
     const char *hint = "";
-    char found[sizeof error->text], text[640], advice[BP_JSON_ADVICE_SIZE],
+    char found[sizeof error->text], text[640], room[BP_JSON_ADVICE_SIZE],
         hinted[BP_JSON_ADVICE_SIZE + 4] = "";
+    const char *advice;
     bp_printable(error->text, found, sizeof found);
     switch (json_error_code(error)) {
     case json_error_duplicate_key:
@@ -71,7 +72,7 @@ static BpStatus fail_syntax(const BpDocument *document, const json_error_t *erro
         hint = "; expected UTF-8: save the file in that encoding";
         break;
     case json_error_premature_end_of_input:
-        bp_json_advice(document->text, document->length, document->length, advice);
+        advice = bp_json_advice(document->text, document->length, document->length, room);
         snprintf(text, sizeof text, "found the end of the text, expected more: %s",
                  advice[0] != '\0' ? advice : "a bracket or quote is not closed, or the file is truncated");
         return fail_at_offset(document, document->length, err, text);
@@ -82,7 +83,7 @@ static BpStatus fail_syntax(const BpDocument *document, const json_error_t *erro
         hint = "; expected a number that double precision holds (up to 1.7e308)";
         break;
     default:
-        bp_json_advice(document->text, document->length, at, advice);
+        advice = bp_json_advice(document->text, document->length, at, room);
         if (advice[0] != '\0' && !(only_space_before(document->text, at) && isalnum((unsigned char)rest[0])))
             snprintf(hinted, sizeof hinted, "; %s", advice);
         else if (only_space_before(document->text, at))
@@ -108,7 +109,7 @@ static bool is_binary(const char *text, size_t length) {
 /* Names the remedy for files that are no JSON document at all. */
 static BpStatus refuse_other_files(const BpDocument *document, size_t start, BpError *err) {
     BpKnownFile known;
-    if (bp_known_file(document->name, document->text, document->length, document->length, &known)) {
+    if (bp_known_file(document->name, document->text, document->length, &known)) {
         char text[320];
         snprintf(text, sizeof text, "found %s, expected a scene%s", known.what, bp_known_file_remedy(&known));
         return fail_at_offset(document, 0, err, text);

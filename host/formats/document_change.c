@@ -37,8 +37,9 @@ static BpStatus read_value(const char *set, const char *text, json_t **value, Bp
     if (*value == NULL && !no_memory && is_word(text)) *value = json_string(text);
     if (*value != NULL) return BP_OK;
     if (no_memory) return bp_fail(err, BP_ERR_MEMORY, "out of memory while changing the scene");
-    char advice[BP_JSON_ADVICE_SIZE], message[BP_JSON_ADVICE_SIZE + 40];
-    bp_json_advice(text, strlen(text), bp_json_error_place(text, strlen(text), &error), advice);
+    char room[BP_JSON_ADVICE_SIZE], message[BP_JSON_ADVICE_SIZE + 40];
+    const size_t at = bp_json_error_place(text, strlen(text), &error);
+    const char *const advice = bp_json_advice(text, strlen(text), at, room);
     snprintf(message, sizeof message, "the value is not JSON; %s",
              advice[0] != '\0'
                  ? advice

@@ -12,7 +12,7 @@ size_t bp_json_error_place(const char *text, size_t length, const json_error_t *
 
 enum { BP_JSON_ADVICE_SIZE = 200 };
 
-/* `at`: such an offset. "" where nothing is known that would help. */
-const char *bp_json_advice(const char *text, size_t length, size_t at, char advice[BP_JSON_ADVICE_SIZE]);
+/* `at`: such an offset. Static, or in `room`; "" where nothing is known that would help. */
+const char *bp_json_advice(const char *text, size_t length, size_t at, char room[BP_JSON_ADVICE_SIZE]);
 
 #endif

@@ -17,11 +17,11 @@ void bp_particle_cache_clear(BpParticleCache *cache) {
 }
 
 /* Says what the file is, if it is known, and how to convert it. */
-static BpStatus fail_format(const BpNode *node, const char *path, FILE *stream, uint64_t size, BpError *err) {
-    char bytes[4096];
+static BpStatus fail_format(const BpNode *node, const char *path, FILE *stream, BpError *err) {
+    char bytes[64];
     BpKnownFile known = {BP_FILE_SOURCE, "a file of an unknown format"};
     const size_t length = fread(bytes, 1, sizeof bytes, stream);
-    bp_known_file(path, bytes, length, (size_t)size, &known);
+    bp_known_file(path, bytes, length, &known);
     return bp_node_fail(
         node, BP_PART_VALUE, err,
         "found %s, expected a name that ends in .xyz, .pdb, .cif, .gro, .dump, .lammpstrj, .data, "
@@ -46,7 +46,7 @@ BpStatus bp_particle_cache_open(const BpNode *file_node, const char *path, const
     BP_TRY(bp_node_open_file(file_node, path, "a file of particles", &stream, &size, err));
     BpStatus status = BP_OK;
     const BpParticleFormat format = bp_particle_format_find(path, stream);
-    if (format == BP_PARTICLES_NONE) status = fail_format(file_node, path, stream, size, err);
+    if (format == BP_PARTICLES_NONE) status = fail_format(file_node, path, stream, err);
     char *const copy = status == BP_OK ? strdup(path) : NULL; /* the file's reader keeps the name */
     if (status == BP_OK && copy == NULL) status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a path");
     if (status == BP_OK)

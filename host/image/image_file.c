@@ -8,13 +8,13 @@
 
 /* Says what the file is, if it is known, and how to convert it. */
 static BpStatus fail_kind(const BpImageInput *input, BpError *err) {
-    char bytes[512];
+    char bytes[64];
     BpKnownFile known = {BP_FILE_SOURCE, "another kind of file"};
     const size_t length = fread(bytes, 1, sizeof bytes, input->stream);
     if (length == 0)
         known.what = "an empty file";
     else
-        bp_known_file(input->path, bytes, length, (size_t)input->size, &known);
+        bp_known_file(input->path, bytes, length, &known);
     return bp_image_fail(
         input, err, "found %s, expected an image: PNG, OpenEXR, PFM or Radiance (.hdr)%s", known.what,
         known.kind == BP_FILE_IMAGE ? "; ImageMagick converts it: convert FILE FILE.png" : "");

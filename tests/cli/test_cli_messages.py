@@ -17,21 +17,13 @@ class Messages(ProgramTest):
         return result.errors
 
     def test_numbers(self):
-        for written, place, says in ((".5", 20, "write 0.5"), ("-.5", 20, "write -0.5"), ("5.", 20, "write 5.0"), ("+1", 20, "write 1"),
-                                     ("+.5e3", 20, "write 0.5e3"), ("-0.", 20, "write -0.0"), ("007.50", 20, "write 7.50"),
-                                     ("2.e-1", 20, "write 2.0e-1"), ("1e", 20, '"1e" is no number'), ("1e+", 20, '"1e+" is no number'),
-                                     ("0x10", 21, '"0x10" is no number'), ("20deg", 22, '"20deg" is no number'),
-                                     ("1_000", 21, '"1_000" is no number'), ("1,5", 22, "numbers have a decimal point"),
-                                     ("1/2", 21, "JSON does not calculate"), ("2*3", 21, "JSON does not calculate"),
-                                     ("NaN", 20, "JSON has no NaN: expected a finite number"), ("-inf", 20, "JSON has no -Infinity"),
-                                     ("Infinity", 20, "JSON has no Infinity")):
+        for written, place in ((".5", 20), ("-.5", 20), ("5.", 20), ("+1", 20), ("007.50", 20), ("1e+", 20), ("0x10", 21), ("20deg", 22), ("1,5", 22)):
             for rest in ("}}", ', "max_depth": 3}}', " }\n}"):
-                self.refused('{"camera":{"vfov": ' + written + rest, f"1:{place}", says)
-        # What is advised is right: it is read.
-        for written, right in ((".5", "0.5"), ("5.", "5.0"), ("+1", "1")):
-            self.write("s.json", scene(spheres=[]))
-            self.fail_with(2, "render", "s.json", "--set", f"camera.vfov={written}", says=f"the value is not JSON; write {right}")
-            self.succeed("render", "s.json", "-q", "--set", f"camera.vfov={right}")
+                self.refused('{"camera":{"vfov": ' + written + rest, f"1:{place}", "digits on both sides of the point and without a unit")
+        for written in ("NaN", "-inf", "Infinity"):
+            self.refused('{"camera":{"vfov": %s}}' % written, "1:20", "JSON has no NaN and no Infinity: expected a finite number")
+        self.write("s.json", scene(spheres=[]))
+        self.fail_with(2, "render", "s.json", "--set", "camera.vfov=.5", says="the value is not JSON; numbers are written like 20, 0.5")
 
     def test_signs_and_words(self):
         for text, place, says in (
@@ -43,20 +35,17 @@ class Messages(ProgramTest):
                 ('{"camera":{"vfov":}}', "1:19", "a value is missing after the colon"),
                 ('{"camera"}', "1:10", "a colon and a value are missing"),
                 ("{'camera':{'vfov': 1}}", "1:2", "double quotes"), ("{\"camera\":{\"view\": 'front'}}", "1:20", "double quotes"),
-                ('{“camera”:{"vfov": 1}}', "1:2", "double quotes"), ('{"title": „a“}', "1:11", "double quotes"),
-                ('{camera:{"vfov": 1}}', "1:2", 'write "camera"'), ('{"camera":{vfov: 1}}', "1:12", 'write "vfov"'),
-                ('{"camera":{"view": front}}', "1:20", 'write "front"'),
-                ('{"camera":{"fit": True}}', "1:19", "write true"), ('{"camera":{"fit": None}}', "1:19", "write null"),
+                ('{camera:{"vfov": 1}}', "1:2", "double quotes"), ('{"camera":{vfov: 1}}', "1:12", "double quotes"),
+                ('{"camera":{"fit": True}}', "1:19", "true, false and null are written like that"),
                 ('// a\n{"camera":{}}', "1:1", "JSON has no comments"), ('# a\n{"camera":{}}', "1:1", "JSON has no comments"),
                 ('{"camera":{"vfov": 1 /* a */}}', "1:22", "JSON has no comments"),
                 ('{"camera":{"lookat": (1,2,3)}}', "1:22", "square brackets: [1, 2, 3]"),
                 ('{"camera":{"vfov"= 1}}', "1:18", "a colon stands between a name and its value"),
-                ('{"camera":{"vfov": 1};"a":2}', "1:22", "a comma stands between members"),
-                ('{"camera":{"vfov": 1} "title": "a"}', "1:23", "is there a comma missing before it?"),
-                ('{"camera":{"lookat": [1 2 3]}}', "1:25", "is there a comma missing before it?"),
-                ('{"camera":{"vfov" 1}}', "1:19", "is there a colon or a comma missing before it?"),
-                ('{"title": "a\nb"}', "1:11", "is its closing quote missing?"), ('{"title": "a\\qb"}', "1:11", "write \\\\ for a backslash"),
-                ('{"title": "a\tb"}', "1:11", "write \\t for a tab")):
+                ('{"camera":{"vfov": 1};"a":2}', "1:22", "is there a comma or a colon missing before it?"),
+                ('{"camera":{"vfov": 1} "title": "a"}', "1:23", "is there a comma or a colon missing before it?"),
+                ('{"camera":{"lookat": [1 2 3]}}', "1:25", "is there a comma or a colon missing before it?"),
+                ('{"camera":{"vfov" 1}}', "1:19", "is there a comma or a colon missing before it?"),
+                ('{"title": "a\nb"}', "1:11", "is its closing quote missing?")):
             self.refused(text, place, says)
 
     def test_brackets(self):
@@ -107,12 +96,10 @@ class Messages(ProgramTest):
 
     CONVERT = "convert it, with ASE or MDAnalysis, to extended XYZ"
     TABLE = "convert it, to CSV or PLY"
-    MESH, WORLD = "give the path of a file named .ply, .obj, .stl or .off", "export its meshes as PLY, OBJ, STL or OFF"
+    MESH = "give the path of a file named .ply, .obj, .stl or .off"
     POSCAR = b"NaCl\n 1.0\n5.6 0 0\n0 5.6 0\n0 0 5.6\nNa Cl\n4 4\nDirect\n0 0 0\n"
-    OBJ = b"# a cube\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
-    FILES = (("POSCAR", POSCAR, "a structure of VASP (POSCAR)", CONVERT), ("CONTCAR.relaxed", POSCAR, "a structure of VASP", CONVERT),
-             ("unnamed", POSCAR, "a structure of VASP", CONVERT), ("run.vasp", POSCAR, "a structure of VASP", CONVERT),
-             ("unnamed", OBJ, "a mesh (OBJ)", MESH), ("a.mtl", b"newmtl a\nKd 1 1 1\n", "the materials of a mesh (MTL)", MESH),
+    FILES = (("POSCAR", POSCAR, "a structure of VASP (POSCAR)", CONVERT), ("run.vasp", POSCAR, "a structure of VASP", CONVERT),
+             ("a.mtl", b"newmtl a\nKd 1 1 1\n", "the materials of a mesh (MTL)", MESH),
              ("a.xtc", struct.pack(">ii", 1995, 3) + bytes(90), "a trajectory of GROMACS (XTC)", CONVERT),
              ("unnamed", struct.pack(">ii", 1993, 3) + bytes(90), "a trajectory of GROMACS (TRR)", CONVERT),
              ("a.dcd", struct.pack("<i", 84) + b"CORD" + bytes(90), "a trajectory of CHARMM or NAMD (DCD)", CONVERT),
@@ -121,8 +108,7 @@ class Messages(ProgramTest):
              ("a.vtk", b"# vtk DataFile Version 3.0\n", "a file of VTK", TABLE), ("a.npy", b"\x93NUMPY\1\0" + bytes(90), "an array of NumPy (.npy)", TABLE),
              ("a.npz", b"PK\3\4" + bytes(90), "arrays of NumPy (.npz)", TABLE), ("a.xlsx", b"PK\3\4" + bytes(90), "a spreadsheet", TABLE),
              ("a.zip", b"PK\3\4" + bytes(90), "a file packed by zip", "unpack it first"),
-             ("a.usda", b"#usda 1.0\n", "a USD file", WORLD), ("a.pov", b"camera {}\n", "a scene of POV-Ray", WORLD),
-             ("main.cc", b"// A picture\n#include <iostream>\nint main() {}\n", "the source text of a program", "write the scene as JSON"),
+             ("main.cc", b"// A picture\nint main() {}\n", "the source text of a program", "write the scene as JSON"),
              ("unnamed", b'#include "rtweekend.h"\n', "the source text of a program", "write the scene as JSON"),
              ("a.test.gz", gzip.compress(b"hello"), "a file packed by gzip", "whose format the name tells, as in FILE.xyz.gz; rename it, or unpack"),
              ("a.json.gz", gzip.compress(b"{}"), "a file packed by gzip", "unpack it"),
