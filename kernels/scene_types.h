@@ -378,6 +378,7 @@ enum { FUZZ_SPHERE, FUZZ_BALL };
 enum { FRESNEL_SCHLICK, FRESNEL_EXACT, FRESNEL_NONE };
 enum { TOTAL_REFLECT, TOTAL_ABSORB, TOTAL_REFRACT };
 enum { MAPPING_SOLID, MAPPING_SURFACE };
+/* Noise stands together, and behind it the image. */
 enum { PATTERN_CHECKER, PATTERN_PERLIN, PATTERN_TURBULENCE, PATTERN_MARBLE, PATTERN_WOOD, PATTERN_IMAGE };
 #define LATTICE_BESIDE                                                                                       \
     4096 /* by a part in so many of a cell a place may be told from the corner ahead of it */

@@ -301,9 +301,10 @@ static void pack_material(const BpMaterial *material, bool inside_out, PackedMat
 
 _Static_assert((int)BP_MAPPING_SOLID == MAPPING_SOLID && (int)BP_MAPPING_SURFACE == MAPPING_SURFACE,
                "mappings differ between host and kernel");
-_Static_assert(BP_PATTERN_PERLIN + 1 == PATTERN_PERLIN && BP_PATTERN_TURBULENCE + 1 == PATTERN_TURBULENCE &&
-                   BP_PATTERN_MARBLE + 1 == PATTERN_MARBLE && BP_PATTERN_WOOD + 1 == PATTERN_WOOD &&
-                   PATTERN_WOOD < PATTERN_IMAGE,
+#define PATTERN_OF(pattern) ((int)(pattern) + PATTERN_PERLIN)
+_Static_assert(PATTERN_OF(BP_PATTERN_TURBULENCE) == PATTERN_TURBULENCE &&
+                   PATTERN_OF(BP_PATTERN_MARBLE) == PATTERN_MARBLE &&
+                   PATTERN_OF(BP_PATTERN_WOOD) == PATTERN_WOOD && PATTERN_WOOD < PATTERN_IMAGE,
                "patterns differ between host and kernel");
 _Static_assert(BP_LATTICE_PERIOD == LATTICE_PERIOD, "lattices differ between host and kernel");
 
@@ -321,7 +322,7 @@ static void pack_lattice(const BpTexture *texture, const double from[3], bool si
     for (int a = 0; a < 3; ++a) {
         const double place = from[a] / texture->size, period = LATTICE_PERIOD;
         double whole = floor(place);
-        if (texture->type == BP_TEXTURE_CHECKER && place - whole > 1 - 1.0 / LATTICE_BESIDE) ++whole;
+        if (!bp_texture_has(texture, BP_TEXTURE_PATTERN) && place - whole > 1 - 1.0 / LATTICE_BESIDE) ++whole;
         packed->rest[a] = place - whole;
         kind->cell[a] = (packed_uint)(whole - floor(whole / period) * period);
     }
@@ -355,7 +356,7 @@ static packed_uint pattern_of(const BpTexture *texture) {
     case BP_TEXTURE_CHECKER:
         return PATTERN_CHECKER;
     case BP_TEXTURE_NOISE:
-        return (packed_uint)texture->pattern + PATTERN_PERLIN;
+        return (packed_uint)PATTERN_OF(texture->pattern);
     case BP_TEXTURE_IMAGE:
         return PATTERN_IMAGE;
     }

@@ -3,6 +3,10 @@
  * In:    surfaces as fetch_surface leaves them, their points and outward normals.   Out: the same, with their textures.
  * Knows: PackedVariation (scene_types.h), each texture by its one function.   Does not know: paths. */
 #if EFFECT_TEXTURES
+/* Of the types whose effect is TEXTURES, those before PATTERN_PERLIN, which every scene with textures has. A second one makes
+ * this a function that chooses by PATTERN_... */
+#define basic_texture checker_colour
+
 /* Of the texture with this number, counted from 1, in the `active` lanes. */
 static Vec3 texture_value(const Scene *scene, vuint number, const Point *point, Vec3 outward, vbool active) {
     const vuint index = choose_uint(active, number - splat_uint(1), splat_uint(0));
@@ -17,16 +21,16 @@ static Vec3 texture_value(const Scene *scene, vuint number, const Point *point, 
     rest = rest & vbool_not(image);
 #endif
 #if EFFECT_NOISE
-    const vbool noisy = rest & vbool_of_uint(pattern != splat_uint(PATTERN_CHECKER));
+    const vbool noisy = rest & vbool_of_uint(pattern >= splat_uint(PATTERN_PERLIN));
     if (any_lane(noisy))
         value = choose3(noisy, pattern_colour(scene, numbers, kinds, point, pattern, noisy), value);
     rest = rest & vbool_not(noisy);
 #endif
     if (any_lane(rest))
-        value = choose3(rest, checker_colour(scene, numbers, kinds, point, outward, rest), value);
+        value = choose3(rest, basic_texture(scene, numbers, kinds, point, outward, rest), value);
     return value;
 #else
-    return checker_colour(scene, numbers, kinds, point, outward, active);
+    return basic_texture(scene, numbers, kinds, point, outward, active);
 #endif
 }
 

@@ -1086,7 +1086,7 @@ MUTANTS = [
     Mutant("light everywhere the same", "this program: the brightest light for all of it",
            [patch(KERNEL, "*emitted = choose3(varies, value, *emitted);", "(void)value.x;")], [check("checker-light")]),
     Mutant("noise of the pattern before its own", "host and kernel count patterns from another",
-           [patch("host/packed/pack.c", "(packed_uint)texture->pattern + PATTERN_PERLIN", "(packed_uint)texture->pattern")], [check("noise")]),
+           [patch("host/packed/pack.c", "(packed_uint)PATTERN_OF(texture->pattern)", "(packed_uint)texture->pattern")], [check("noise")]),
     Mutant("a texture calls for the effect of another", "noise left out where there is noise",
            [patch("host/packed/effects.c", "texture_effects[scene->textures[number - 1].type] == effect",
                   "texture_effects[scene->textures[number - 1].type] != effect")], [test("test_effects_analyse", "textures")]),
