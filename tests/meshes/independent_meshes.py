@@ -1,6 +1,6 @@
 """What trimesh finds in files of meshes, as JSON. Run by test_mesh_files.py, in a Python that has it; exit code 77: it has not.
 
-python3 independent_meshes.py read FILE...      counts, area, and the places of the vertices that faces have, of each
+python3 independent_meshes.py read FILE...      counts, area, box, closedness, and the places of the vertices that faces have, of each
 python3 independent_meshes.py write FOLDER      writes meshes of its own in all formats, and says what they hold
 """
 import json
@@ -31,7 +31,8 @@ def read(paths):
             continue
         flat = mesh.area_faces <= 1e-9 * max(mesh.area_faces, default=0)
         used = mesh.vertices[numpy.unique(mesh.faces[~flat])]
-        found[path] = {"triangles": len(mesh.faces), "area": float(mesh.area),
+        found[path] = {"triangles": len(mesh.faces), "vertices": len(mesh.vertices), "area": float(mesh.area), "box": mesh.bounds.tolist(),
+                       "closed": bool(mesh.is_watertight and mesh.is_winding_consistent),
                        "places": sorted({tuple(round(float(c), 5) + 0.0 for c in place) for place in used})}
     return found
 

@@ -8,6 +8,7 @@ Run as: PYTHONPATH=tests/support python3 test_mesh_scenes.py PROGRAM SOURCE_DIR
 import json
 import math
 import os
+import unittest
 
 from cli import ProgramTest, main
 from pfm import read_pfm
@@ -22,6 +23,7 @@ MATERIALS = {"clay": {"type": "lambertian", "albedo": [0.7, 0.4, 0.25]}, "glass"
              "mapped": {"type": "lambertian", "albedo": {"texture": "map"}}}
 TEXTURES = {"map": {"type": "checker", "mapping": "surface", "repeat": [4, 2], "colors": [[0.9, 0.9, 0.9], [0.1, 0.1, 0.1]]}}
 CAMERA = {"image_width": 48, "aspect_ratio": 1.5, "samples_per_pixel": 8, "max_depth": 10, "vfov": 35, "lookfrom": [4, 3, 5], "lookat": [0.5, 0.5, 0]}
+BUNNY = "/usr/share/glmark2/models/bunny.obj"
 GROUND = {"center": [0, -100, 0], "radius": 99, "material": "clay"}
 
 
@@ -258,6 +260,27 @@ class Meshes(ProgramTest):
         self.assertTrue(width * height / 5 < len(darker) < width * height * 3 / 4, "the cube fills the picture and is not cut off")
         for at in darker:
             self.assertTrue(0 < at % width < width - 1 and 0 < at // width < height - 1, at)
+
+    @unittest.skipUnless(os.path.exists(BUNNY), "glmark2-data is not installed")
+    def test_bunny(self):
+        """As PLY and as the OBJ that it is made of, alone; and of glass, since it is closed."""
+        with open(BUNNY) as file:
+            rows = [line.split() for line in file]
+        vertices = [row[1:4] for row in rows if row and row[0] == "v"]
+        faces = [[int(corner.split("/")[0]) - 1 for corner in row[1:]] for row in rows if row and row[0] == "f"]
+        head = (f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\nproperty double x\nproperty double y\nproperty double z\n"
+                f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
+        self.write("bunny.ply", head + "".join(" ".join(v) + "\n" for v in vertices) + "".join("3 %d %d %d\n" % tuple(f) for f in faces))
+        pictures = []
+        for name in ("bunny.ply", BUNNY):
+            said = self.succeed("render", name, "--width", 40, "--spp", 4, "-o", "a.pfm", "--force").errors
+            self.assertIn(f"{len(vertices):,} vertices, {len(faces):,} triangles", said)
+            numbers = read_pfm(self.read("a.pfm"))[2]
+            darker = sum(blue < 0.62 * numbers[0] for blue in numbers[2::3])
+            self.assertTrue(len(numbers) / 3 / 6 < darker < len(numbers) / 3 * 3 / 4, "it fills the picture")
+            pictures.append(self.read("a.pfm"))
+        self.assert_same(*pictures)
+        self.succeed("render", self.scene("s.json", {"file": "bunny.ply", "material": "glass"}), "--fit", "--width", 16, "--spp", 1, "-q", "-o", "x.pfm")
 
     def test_up(self):
         """STL files have z up: what lies at the greatest z is at the top of the picture."""
