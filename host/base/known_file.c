@@ -61,9 +61,12 @@ static const Known known[] = {{{BP_FILE_SUMS, "the sums of a render (.bpa)"}, BE
                               {{BP_FILE_SOURCE, "the source text of a program"}, NAMED(".h")},
                               {{BP_FILE_SOURCE, "the source text of a program"}, NAMED(".py")}};
 
+/* What is no ending, such as POSCAR, is all of a name or its beginning: POSCAR_relaxed. */
 static bool has_ending(const char *name, const char *ending) {
-    const size_t length = strlen(name), size = strlen(ending);
-    return length >= size && strcasecmp(name + length - size, ending) == 0;
+    const char *const slash = strrchr(name, '/'), *const base = slash != NULL ? slash + 1 : name;
+    const size_t length = strlen(base), size = strlen(ending);
+    if (ending[0] != '.') return strncasecmp(base, ending, size) == 0;
+    return length >= size && strcasecmp(base + length - size, ending) == 0;
 }
 
 bool bp_known_file(const char *name, const char *bytes, size_t length, BpKnownFile *found) {
