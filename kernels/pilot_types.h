@@ -15,15 +15,13 @@ enum {
 };
 /* And PILOT_UINTS whole numbers. PILOT_SHAPE: what it met, as the scene counts shapes, or NO_SPHERE. */
 enum { PILOT_SHAPE, PILOT_FLAGS, PILOT_UINTS };
-/* PILOT_LIT: the vertex is one that a ray to a lamp can light. PILOT_UNTOLD: no lamp is sampled, so whether
- * one could be, its material tells. */
+/* PILOT_LIT: the vertex is one that a ray to a lamp can light. */
 enum {
     PILOT_TRACED = 1, /* there is such a segment */
     PILOT_MET = 2,
     PILOT_GOES_ON = 4,
     PILOT_LIT = 8,
-    PILOT_IN_MEDIUM = 16,
-    PILOT_UNTOLD = 32
+    PILOT_IN_MEDIUM = 16
 };
 /* Of a path that does not start at the camera: its origin as two parts, and its direction. */
 enum { PILOT_START_REALS = 9 };

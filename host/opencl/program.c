@@ -95,6 +95,7 @@ static const struct {
     {"texture/image.cl", IN_ALL},
     {"light/environment.cl", IN_ALL},
     {"light/lamps.cl", IN_ALL},
+    {"light/triangle_lamps.cl", IN_ALL},
     {"light/discs.cl", IN_ALL},
     {"light/focusers.cl", IN_ALL},
     {"integrator/path_state.cl", IN_ALL},

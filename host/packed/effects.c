@@ -151,7 +151,9 @@ static bool explain_media(const BpScene *scene, size_t size, char *reason) {
     return around || filled > 0 || interfaces > 0;
 }
 
-#define NO_LAMP_REASON "no sphere gives light, and no disc of the sky"
+static void explain_no_lamp(const BpScene *scene, size_t size, char *reason) {
+    snprintf(reason, size, "no %s gives light, and no disc of the sky", bp_scene_noun(scene));
+}
 
 static size_t bright_discs(const BpScene *scene) {
     size_t bright = 0;
@@ -235,13 +237,18 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
         lit += is_lit;
         both += is_lamp && is_lit;
     }
-    for (size_t i = 0; i < scene->triangle_count; ++i)
-        lit += bp_material_is_lit(&scene->materials[scene->triangles[i].material]);
+    for (size_t t = 0; t < scene->triangle_count; ++t) {
+        const bool is_lamp = bp_triangle_emits(scene, t);
+        const bool is_lit = bp_material_is_lit(&scene->materials[scene->triangles[t].material]);
+        lamps += is_lamp;
+        lit += is_lit;
+        both += is_lamp && is_lit;
+    }
     name_lamps(lamps, discs, image, sizeof all, all);
-    if (lamps == 0 && !sky)
-        snprintf(reason, size,
-                 enclosing != SIZE_MAX ? "the only lamp surrounds everything: every path finds it"
-                                       : NO_LAMP_REASON);
+    if (lamps == 0 && !sky && enclosing != SIZE_MAX)
+        snprintf(reason, size, "the only lamp surrounds everything: every path finds it");
+    else if (lamps == 0 && !sky)
+        explain_no_lamp(scene, size, reason);
     else if (lit == 0 && !media)
         snprintf(reason, size, "%s, but nothing matte, nothing of fuzz 1/64 or roughness 1/16", all);
     else if (!sky && lamps == 1 && lit == 1 && both == 1 && !media)
@@ -308,19 +315,27 @@ static bool explain_environment(const BpScene *scene, size_t size, char *reason)
     return image != NULL;
 }
 
-/* Whether there are triangles. Their light, and what lamps send through or off them, is found by chance. */
+/* Whether there are triangles. What lamps send through or off them is found by chance. */
 static bool explain_triangles(const BpScene *scene, size_t size, char *reason) {
-    const size_t emitting = bp_scene_emitting_triangles(scene);
     if (scene->triangle_count == 0)
         snprintf(reason, size, "no triangles, quads, boxes or meshes");
-    else if (emitting > 0)
-        snprintf(reason, size, "%zu triangle%s; %zu of them emit%s, found by chance: no rays are sent to %s",
-                 scene->triangle_count, bp_plural(scene->triangle_count), emitting, emitting == 1 ? "s" : "",
-                 emitting == 1 ? "it" : "them");
     else
         snprintf(reason, size, "%zu triangle%s%s", scene->triangle_count, bp_plural(scene->triangle_count),
                  scene->sphere_count == 0 ? " and no spheres" : "");
     return scene->triangle_count > 0;
+}
+
+/* Whether rays are sent to triangles, where they are `sent` to lamps. */
+static bool explain_triangle_lamps(const BpScene *scene, bool sent, size_t size, char *reason) {
+    const size_t emitting = bp_scene_emitting_triangles(scene);
+    if (emitting == 0)
+        snprintf(reason, size, "no triangle emits");
+    else if (!sent)
+        snprintf(reason, size, "no rays are sent to lamps");
+    else
+        snprintf(reason, size, "%zu of %zu triangle%s emit%s, on both sides", emitting, scene->triangle_count,
+                 bp_plural(scene->triangle_count), emitting == 1 ? "s" : "");
+    return emitting > 0 && sent;
 }
 
 void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
@@ -354,12 +369,15 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     if (explain_motion(scene, size, effects->reason[BP_EFFECT_MOTION]))
         effects->bits |= 1u << BP_EFFECT_MOTION;
     if ((effects->bits & (1u << BP_EFFECT_EMISSION | 1u << BP_EFFECT_DISCS)) == 0 && !sampled_image(scene))
-        snprintf(effects->reason[BP_EFFECT_LAMPS], size,
-                 NO_LAMP_REASON); /* without another look at all spheres */
+        explain_no_lamp(scene, size,
+                        effects->reason[BP_EFFECT_LAMPS]); /* without another look at all shapes */
     else if (explain_lamps(scene, size, effects->reason[BP_EFFECT_LAMPS]))
         effects->bits |= 1u << BP_EFFECT_LAMPS;
     if (explain_triangles(scene, size, effects->reason[BP_EFFECT_TRIANGLES]))
         effects->bits |= 1u << BP_EFFECT_TRIANGLES;
+    if (explain_triangle_lamps(scene, bp_effects_has(effects->bits, BP_EFFECT_LAMPS), size,
+                               effects->reason[BP_EFFECT_TRIANGLE_LAMPS]))
+        effects->bits |= 1u << BP_EFFECT_TRIANGLE_LAMPS;
     effects->triangles_alone = scene->triangle_count > 0 && scene->sphere_count == 0;
     if (!bp_effects_has(effects->bits, BP_EFFECT_LAMPS))
         snprintf(effects->reason[BP_EFFECT_CAUSTICS], size, "no rays are sent to lamps");

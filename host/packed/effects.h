@@ -38,7 +38,8 @@
     X(MEDIA, "media", "fog, smoke and tinted glass, in spheres or in the whole scene", "", "")               \
     X(SHADOW_CATCHER, "shadow_catcher", "a plane that shows nothing but the shadow on it", "", "")           \
     X(CAUSTICS, "caustics", "rays to lamps through balls of glass and off mirrors", "", "")                  \
-    X(TRIANGLES, "triangles", "triangles beside spheres, or in place of them", "", "")
+    X(TRIANGLES, "triangles", "triangles beside spheres, or in place of them", "", "")                       \
+    X(TRIANGLE_LAMPS, "triangle_lamps", "rays to triangles that emit", "", "")
 
 typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,

@@ -11,6 +11,7 @@
 #include "base/color.h"
 #include "base/status.h"
 #include "reals.h"
+#include "scene/triangle_area.h"
 #include "scene_types.h"
 
 #include <math.h>
@@ -18,10 +19,12 @@
 #include <string.h>
 
 #define BINS 16
+#define PI 3.14159265358979323846
 
 typedef struct Lamp {
     double center[3], motion[3], radius, power; /* center: when the shutter opens */
     uint32_t slot;
+    bool flat; /* a triangle, and the ball around it */
 } Lamp;
 
 typedef struct Box {
@@ -42,9 +45,17 @@ typedef struct Run {
     Box box; /* around the spheres and their ways */
 } Run;
 
-bool bp_sphere_emits(const BpScene *scene, size_t i) {
-    const double *emit = scene->materials[scene->spheres[i].material].emit;
+static bool emits(const BpScene *scene, uint32_t material) {
+    const double *emit = scene->materials[material].emit;
     return emit[0] > 0 || emit[1] > 0 || emit[2] > 0;
+}
+
+bool bp_sphere_emits(const BpScene *scene, size_t i) {
+    return emits(scene, scene->spheres[i].material);
+}
+
+bool bp_triangle_emits(const BpScene *scene, size_t t) {
+    return emits(scene, scene->triangles[t].material);
 }
 
 size_t bp_enclosing_lamp(const BpScene *scene) {
@@ -240,7 +251,9 @@ static bool write_node(Builder *builder, const Run *run, uint32_t level, uint32_
         const Lamp *lamp = &builder->lamps[parts[p].first];
         double center[3];
         memcpy(center, lamp->center, sizeof center);
-        const double radius = leaf ? lamp->radius : -ball_around(builder, &parts[p], center);
+        const double radius = !leaf        ? -ball_around(builder, &parts[p], center)
+                              : lamp->flat ? -lamp->radius
+                                           : lamp->radius;
         uint32_t word = CHILD_LEAF | lamp->slot;
         if (leaf)
             builder->tree->slot_lamp[lamp->slot] = place;
@@ -258,14 +271,43 @@ static bool write_node(Builder *builder, const Run *run, uint32_t level, uint32_
 
 /* ---- the whole ---- */
 
-/* In order of the spheres' numbers, as the device has them. */
-static void collect_lamps(const BpScene *scene, const BpTree *tree, const uint32_t *slot_of, size_t enclosing,
-                          Builder *builder) {
+/* The ball around the triangle in a slot: its centre is that of the vertices. Its power is what a sphere of
+ * as much light in all directions has. */
+static void place_triangle(const BpTree *tree, double luminance, Lamp *lamp) {
+    const uint32_t lane = lamp->slot % tree->width;
+    const size_t place = (size_t)(lamp->slot - lane - tree->first_triangles * tree->width) * 9 + lane;
+    BpTriangle triangle;
+    for (uint32_t v = 0; v < 3; ++v)
+        for (uint32_t a = 0; a < 3; ++a)
+            triangle.vertices[v][a] =
+                bp_reals_load(tree->triangles, tree->single_precision, place + (3 * v + a) * tree->width);
+    double normal[3];
+    bp_triangle_area(&triangle, normal);
+    for (uint32_t a = 0; a < 3; ++a)
+        lamp->center[a] = (triangle.vertices[0][a] + triangle.vertices[1][a] + triangle.vertices[2][a]) / 3;
+    for (uint32_t v = 0; v < 3; ++v) {
+        double way[3];
+        bp_way(lamp->center, triangle.vertices[v], way);
+        lamp->radius = fmax(lamp->radius, bp_length(way));
+    }
+    lamp->power = luminance * bp_length(normal) / (2 * PI);
+    lamp->flat = true;
+}
+
+/* Whether the device sees the power of a lamp: one without any would end a node's children. */
+static bool has_power(const Builder *builder, const Lamp *lamp) {
+    const double power = lamp->power * builder->tree->unit;
+    return (builder->single ? (double)(float)power : power) > 0;
+}
+
+/* In order of the shapes' numbers, as the device has them; returns how many there are. */
+static uint32_t collect_lamps(const BpScene *scene, const BpTree *tree, const uint32_t *slot_of,
+                              size_t enclosing, Builder *builder) {
     uint32_t count = 0;
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         if (!bp_sphere_is_sampled(scene, i, enclosing)) continue;
         Lamp *lamp = &builder->lamps[count++];
-        lamp->slot = slot_of[i];
+        *lamp = (Lamp){.slot = slot_of[i]};
         const uint32_t lane = lamp->slot % tree->width;
         const size_t place = (size_t)(lamp->slot - lane) * 4 + lane,
                      motion = (size_t)(lamp->slot - lane) * 3 + lane;
@@ -279,6 +321,14 @@ static void collect_lamps(const BpScene *scene, const BpTree *tree, const uint32
         const double *emit = scene->materials[scene->spheres[i].material].emit;
         lamp->power = bp_luminance_of(emit) * lamp->radius * lamp->radius;
     }
+    for (size_t t = 0; t < scene->triangle_count; ++t) {
+        if (!bp_triangle_emits(scene, t)) continue;
+        Lamp *lamp = &builder->lamps[count];
+        *lamp = (Lamp){.slot = slot_of[scene->sphere_count + t]};
+        place_triangle(tree, bp_luminance_of(scene->materials[scene->triangles[t].material].emit), lamp);
+        count += has_power(builder, lamp);
+    }
+    return count;
 }
 
 /* Keeps powers and their sums within the range of float, however bright the lamps are. */
@@ -287,6 +337,8 @@ static double unit_of_power(const BpScene *scene, size_t enclosing) {
     for (size_t i = 0; i < scene->sphere_count; ++i)
         if (i != enclosing)
             brightest = fmax(brightest, bp_luminance_of(scene->materials[scene->spheres[i].material].emit));
+    for (size_t t = 0; t < scene->triangle_count; ++t)
+        brightest = fmax(brightest, bp_luminance_of(scene->materials[scene->triangles[t].material].emit));
     for (size_t i = 0; i < scene->disc_count; ++i)
         brightest = fmax(brightest, bp_luminance_of(scene->discs[i].radiance));
     if (scene->environment != NULL) brightest = fmax(brightest, scene->environment->mean);
@@ -296,18 +348,19 @@ static double unit_of_power(const BpScene *scene, size_t enclosing) {
 BpStatus bp_lamp_tree_build(const BpScene *scene, const BpTree *tree, BpLampTree *lamps, BpError *err) {
     *lamps = (BpLampTree){0};
     Builder builder = {.tree = lamps, .single = tree->single_precision};
-    const size_t enclosing = bp_enclosing_lamp(scene);
+    const size_t enclosing = bp_enclosing_lamp(scene), shapes = bp_scene_shapes(scene);
     const size_t slots = (size_t)tree->leaf_count * tree->width;
     BpStatus status = BP_OK;
     uint32_t *slot_of = NULL;
     for (size_t i = 0; i < scene->sphere_count; ++i)
         lamps->lamp_count += bp_sphere_is_sampled(scene, i, enclosing);
-    const uint32_t count = lamps->lamp_count;
+    lamps->lamp_count += (uint32_t)bp_scene_emitting_triangles(scene);
+    uint32_t count = lamps->lamp_count;
     lamps->unit = unit_of_power(scene, enclosing);
     bool enough = true;
     if (count > 0 ||
         enclosing != SIZE_MAX) { /* a kernel asks for the lamp in the slot of each that it hits */
-        slot_of = malloc(scene->sphere_count * sizeof *slot_of);
+        slot_of = malloc(shapes * sizeof *slot_of);
         builder.lamps = malloc((count + 1) * sizeof *builder.lamps);
         lamps->slot_lamp = malloc(slots * sizeof *lamps->slot_lamp);
         enough = slot_of != NULL && builder.lamps != NULL && lamps->slot_lamp != NULL;
@@ -315,11 +368,10 @@ BpStatus bp_lamp_tree_build(const BpScene *scene, const BpTree *tree, BpLampTree
     if (enough && slot_of != NULL) {
         for (size_t slot = 0; slot < slots; ++slot) {
             lamps->slot_lamp[slot] = NO_LAMP;
-            if (tree->slot_sphere[slot] < scene->sphere_count)
-                slot_of[tree->slot_sphere[slot]] = (uint32_t)slot;
+            if (tree->slot_sphere[slot] < shapes) slot_of[tree->slot_sphere[slot]] = (uint32_t)slot;
         }
         lamps->slot_count = (uint32_t)slots;
-        collect_lamps(scene, tree, slot_of, enclosing, &builder);
+        count = lamps->lamp_count = collect_lamps(scene, tree, slot_of, enclosing, &builder);
     }
     const Run all = run_of(&builder, 0, enough ? count : 0);
     uint32_t root;

@@ -4,11 +4,12 @@
  * Out:   BpLampTree, in the layout of kernels/scene_types.h.
  * Knows: what counts as a lamp, the packed layout.   Does not know: OpenCL, how surfaces reflect.
  *
- * A lamp is a sphere that emits, unless it encloses every other sphere: then no point is outside it, and it
- * is the sky. Of one that moves, the tree has the place where the shutter opens, and the kernel adds its
- * motion; the balls are around all of its way. The tree depends on the spheres' centres, motions and radii as
- * packed, their radiance and their order in the scene, and not on how the spheres themselves are arranged,
- * since the picture depends on it. */
+ * A lamp is a triangle that emits, or a sphere that does, unless it encloses every other sphere: then no
+ * point is outside it, and it is the sky. Of one that moves, the tree has the place where the shutter opens,
+ * and the kernel adds its motion; the balls are around all of its way. A triangle stands in it as the ball
+ * around it. The tree depends on the spheres' centres, motions and radii and the triangles' vertices as
+ * packed, their radiance and their order in the scene, and not on how they themselves are arranged, since the
+ * picture depends on it. */
 #ifndef BP_PACKED_LAMP_TREE_H
 #define BP_PACKED_LAMP_TREE_H
 
@@ -18,11 +19,14 @@ typedef struct BpLampTree {
     uint32_t lamp_count;
     double unit;         /* of power: of the brightest lamp or disc, 1 over its luminance; 0: all is dark */
     uint32_t node_count; /* at least one: the root, without children where there is no lamp */
-    uint32_t slot_count; /* of the spheres, or 0 where there is no lamp */
+    uint32_t slot_count; /* of the shapes, or 0 where there is no lamp */
     void *lamps;         /* node_count * LAMP_NODE_REALS reals, in the precision of the spheres' tree */
     uint32_t *lamp_children; /* node_count * LAMP_WIDTH */
     uint32_t *slot_lamp;     /* slot_count */
 } BpLampTree;
+
+/* Triangle `t` emits. */
+bool bp_triangle_emits(const BpScene *scene, size_t t);
 
 /* Sphere `i` emits. */
 bool bp_sphere_emits(const BpScene *scene, size_t i);

@@ -193,7 +193,7 @@ BpStatus bp_pilot_trace_eyes(BpPilot *pilot, BpPilotFlight *flight, BpError *err
             flight->number_data[2 * i] = pixel_of(plan, &pilot->scene->camera, (first + i) / plan->of_pixel);
             flight->number_data[2 * i + 1] = (first + i) % plan->of_pixel;
         }
-        BP_TRY(bp_pilot_fly(flight, count, SEGMENTS, true, SEGMENTS, err));
+        BP_TRY(bp_pilot_fly(flight, count, SEGMENTS, true, err));
         for (uint32_t i = 0; i < count; ++i) follow_eye(pilot, flight, i, (first + i) / plan->of_pixel);
     }
     return BP_OK;

@@ -112,7 +112,7 @@ static void add_texels(const BpScene *scene, size_t room, BpPilotAim *aim) {
     }
 }
 
-/* ---- lamps: spheres that rays are sent to, and all triangles that emit ---- */
+/* ---- lamps: spheres and triangles that rays are sent to ---- */
 
 static bool is_lamp(const BpScene *scene, size_t shape, size_t enclosing) {
     return bp_pilot_is_triangle(scene, shape) ? bp_luminance_of(bp_pilot_material(scene, shape)->emit) > 0
@@ -195,8 +195,6 @@ static BpStatus find_targets(const BpScene *scene, BpPilotAim *aim, BpError *err
 static double importance(const BpScene *scene, const BpPilotAim *aim, const BpPilotPair *pair) {
     const BpPilotLight *const light = &aim->lights[pair->light];
     const double y = bp_luminance_of(light->radiance);
-    if (pair->target == BP_PILOT_ANYWHERE)
-        return light->share * y * y * 2 * PI * light->radius * light->radius * PI;
     double center[3];
     const double radius = bp_pilot_ball(scene, aim->targets[pair->target], center);
     double extent = 2 * PI * light->cap * PI * radius * radius;
@@ -225,19 +223,11 @@ static void pair_some(BpPilotAim *aim) {
     }
 }
 
-/* Anywhere, from each triangle that emits. */
-static void pair_with_none(const BpScene *scene, BpPilotAim *aim) {
-    for (uint32_t l = 0; l < aim->light_count; ++l)
-        if (!aim->lights[l].distant && bp_pilot_is_triangle(scene, aim->lights[l].shape))
-            aim->pairs[aim->pair_count++] =
-                (BpPilotPair){.light = l, .target = BP_PILOT_ANYWHERE, .share = 1};
-}
-
 /* Half of the paths by importance, so that what matters is well known, half to all pairs alike, so that
  * nothing is missed whose importance was wrong. */
 static BpStatus make_pairs(const BpScene *scene, BpPilotAim *aim, BpError *err) {
     const bool all = aim->target_count <= BP_PILOT_PAIRS_MAX / aim->light_count;
-    const size_t room = aim->light_count + (all ? aim->light_count * aim->target_count : BP_PILOT_PAIRS_MAX);
+    const size_t room = all ? aim->light_count * aim->target_count : BP_PILOT_PAIRS_MAX;
     aim->pairs = malloc(room * sizeof *aim->pairs);
     aim->bounds = malloc(room * sizeof *aim->bounds);
     if (aim->pairs == NULL || aim->bounds == NULL)
@@ -246,18 +236,15 @@ static BpStatus make_pairs(const BpScene *scene, BpPilotAim *aim, BpError *err) 
         pair_all(aim);
     else
         pair_some(aim);
-    pair_with_none(scene, aim);
-    const size_t count = aim->pair_count;
     double sum = 0, below = 0;
-    for (size_t i = 0; i < count; ++i) {
+    for (size_t i = 0; i < room; ++i) {
         BpPilotPair *pair = &aim->pairs[i];
         pair->probability = importance(scene, aim, pair);
         sum += pair->probability;
     }
-    for (size_t i = 0; i < count; ++i) {
+    for (size_t i = 0; i < room; ++i) {
         BpPilotPair *pair = &aim->pairs[i];
-        pair->probability =
-            0.5 * (sum > 0 ? pair->probability / sum : 1 / (double)count) + 0.5 / (double)count;
+        pair->probability = 0.5 * (sum > 0 ? pair->probability / sum : 1 / (double)room) + 0.5 / (double)room;
         aim->bounds[i] = below;
         below += pair->probability;
     }
@@ -274,7 +261,8 @@ BpStatus bp_pilot_aim(const BpScene *scene, BpPilotAim *aim, BpError *err) {
     *aim = (BpPilotAim){0};
     BpStatus status = find_lights(scene, aim, err);
     if (status == BP_OK && aim->light_count > 0) status = find_targets(scene, aim, err);
-    if (status == BP_OK && aim->light_count > 0) status = make_pairs(scene, aim, err);
+    if (status == BP_OK && aim->light_count > 0 && aim->target_count > 0)
+        status = make_pairs(scene, aim, err);
     if (status != BP_OK) bp_pilot_aim_clear(aim);
     return status;
 }
@@ -385,8 +373,7 @@ static void in_triangle(BpRandom *random, const BpTriangle *triangle, double poi
                    v * triangle->vertices[2][a];
 }
 
-/* The area x solid angle x cosine of the ray that it starts, from either side of the triangle. `radius`: 0
- * for a ray anywhere. */
+/* The area x solid angle x cosine of the ray that it starts, from either side of the triangle. */
 static double start_triangle(const BpScene *scene, const BpPilotLight *light, const double center[3],
                              double radius, BpRandom *random, BpPilotStart *start) {
     const BpTriangle *const triangle = bp_pilot_triangle(scene, light->shape);
@@ -394,7 +381,7 @@ static double start_triangle(const BpScene *scene, const BpPilotLight *light, co
     const double area = bp_pilot_area(triangle, normal);
     double measure = area * 2 * PI; /* all that leaves it, by the cosine */
     in_triangle(random, triangle, start->origin);
-    for (int a = 0; a < 3; ++a) axis[a] = radius > 0 ? center[a] - start->origin[a] : 0;
+    for (int a = 0; a < 3; ++a) axis[a] = center[a] - start->origin[a];
     const double distance = bp_normalize(axis);
     if (distance <= radius) {
         const double side = bp_random_next(random) < 0.5 ? -1 : 1;
@@ -426,9 +413,8 @@ void bp_pilot_start(const BpScene *scene, const BpPilotAim *aim, size_t count, B
     *start = (BpPilotStart){.pair = (uint32_t)choose_pair(aim, bp_random_next(random))};
     const BpPilotPair *pair = &aim->pairs[start->pair];
     const BpPilotLight *light = &aim->lights[pair->light];
-    double center[3] = {0};
-    const double radius =
-        pair->target == BP_PILOT_ANYWHERE ? 0 : bp_pilot_ball(scene, aim->targets[pair->target], center);
+    double center[3];
+    const double radius = bp_pilot_ball(scene, aim->targets[pair->target], center);
     const double extent = light->distant ? start_distant(aim, light, center, radius, random, start)
                           : bp_pilot_is_triangle(scene, light->shape)
                               ? start_triangle(scene, light, center, radius, random, start)

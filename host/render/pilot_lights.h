@@ -6,9 +6,7 @@
  *
  * A pair is a light and a specular shape: glass, or metal too smooth to be lit by rays to lamps. A path of
  * the pair begins on the light and flies at the shape. It counts only if it meets that shape first, so each
- * path belongs to one pair, whichever shapes overlap. No ray is sent to a triangle that emits, so its light
- * is found by chance everywhere: it also has a pair whose paths fly anywhere, and count if they meet
- * something that is not specular first. */
+ * path belongs to one pair, whichever shapes overlap. */
 #ifndef BP_RENDER_PILOT_LIGHTS_H
 #define BP_RENDER_PILOT_LIGHTS_H
 
@@ -16,8 +14,7 @@
 #include "scene/scene.h"
 
 #define BP_PILOT_LIGHTS_MAX 256u
-#define BP_PILOT_PAIRS_MAX 65536u /* with targets */
-#define BP_PILOT_ANYWHERE UINT32_MAX
+#define BP_PILOT_PAIRS_MAX 65536u
 
 typedef struct BpPilotLight {
     bool distant;    /* a disc of the sky or a texel of the image around; else a lamp */
@@ -32,7 +29,7 @@ typedef struct BpPilotLight {
 } BpPilotLight;
 
 typedef struct BpPilotPair {
-    uint32_t light, target; /* into lights[] and targets[], or BP_PILOT_ANYWHERE */
+    uint32_t light, target; /* into lights[] and targets[] */
     double probability;
     double share; /* of pairs alike for which this one stands, 1 or more */
 } BpPilotPair;

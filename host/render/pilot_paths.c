@@ -13,7 +13,6 @@ enum {
     ARGUMENT_COUNT,
     ARGUMENT_SEGMENTS,
     ARGUMENT_FROM_CAMERA,
-    ARGUMENT_ENDS_WITHIN,
     ARGUMENT_NUMBERS,
     ARGUMENT_STARTS,
     ARGUMENT_RECORDS,
@@ -74,7 +73,7 @@ BpStatus bp_pilot_flight_create(BpWorker *worker, const BpScene *scene, BpPilotF
 }
 
 BpStatus bp_pilot_fly(BpPilotFlight *flight, cl_uint count, cl_uint segments, bool from_camera,
-                      cl_uint ends_within, BpError *err) {
+                      BpError *err) {
     BpWorker *worker = flight->worker;
     cl_command_queue queue = worker->device->queue;
     const cl_uint camera = from_camera, none = 0;
@@ -87,7 +86,6 @@ BpStatus bp_pilot_fly(BpPilotFlight *flight, cl_uint count, cl_uint segments, bo
     } arguments[] = {{ARGUMENT_COUNT, sizeof count, &count},
                      {ARGUMENT_SEGMENTS, sizeof segments, &segments},
                      {ARGUMENT_FROM_CAMERA, sizeof camera, &camera},
-                     {ARGUMENT_ENDS_WITHIN, sizeof ends_within, &ends_within},
                      {ARGUMENT_NUMBERS, sizeof(cl_mem), &flight->numbers},
                      {ARGUMENT_STARTS, sizeof(cl_mem), &flight->starts},
                      {ARGUMENT_RECORDS, sizeof(cl_mem), &flight->records},
@@ -152,9 +150,7 @@ bool bp_pilot_is_surface(const BpScene *scene, const BpPilotSegment *segment) {
 }
 
 bool bp_pilot_is_rough(const BpScene *scene, const BpPilotSegment *segment) {
-    if (!bp_pilot_is_surface(scene, segment)) return false;
-    return (segment->flags & PILOT_UNTOLD) != 0 ? bp_material_is_lit(bp_pilot_material_at(scene, segment))
-                                                : (segment->flags & PILOT_LIT) != 0;
+    return bp_pilot_is_surface(scene, segment) && (segment->flags & PILOT_LIT) != 0;
 }
 
 void bp_pilot_carried(const BpPilotFlight *flight, uint32_t path, uint32_t segments, uint32_t s,

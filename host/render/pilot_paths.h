@@ -34,9 +34,8 @@ BpStatus bp_pilot_flight_create(BpWorker *worker, const BpScene *scene, BpPilotF
 void bp_pilot_flight_clear(BpPilotFlight *flight);
 
 /* Traces `count` paths of at most `segments` segments, whose numbers and, if not `from_camera`, starts are
- * set. A path ends at a vertex that a ray to a lamp can light, if it is one of its first `ends_within`. */
-BpStatus bp_pilot_fly(BpPilotFlight *flight, cl_uint count, cl_uint segments, bool from_camera,
-                      cl_uint ends_within, BpError *err);
+ * set. */
+BpStatus bp_pilot_fly(BpPilotFlight *flight, cl_uint count, cl_uint segments, bool from_camera, BpError *err);
 
 /* Of a path of the last batch, which had `segments`. False: the path has no such segment. */
 bool bp_pilot_segment(const BpPilotFlight *flight, uint32_t path, uint32_t segments, uint32_t s,

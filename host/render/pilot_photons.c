@@ -61,9 +61,7 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
     const BpScene *scene = pilot->scene;
     const BpPilotPair *pair = &pilot->aim->pairs[start->pair];
     const BpPilotLight *light = &pilot->aim->lights[pair->light];
-    const bool anywhere = pair->target == BP_PILOT_ANYWHERE;
-    const uint32_t target = anywhere ? NO_SPHERE : pilot->aim->targets[pair->target];
-    const size_t through = anywhere ? bp_pilot_way_direct(scene) : bp_pilot_way(scene, target);
+    const uint32_t target = pilot->aim->targets[pair->target];
     double measure = start->measure;
     uint32_t deposits = 0, vertices = 0; /* specular, up to the first rough point */
     bool aimed = false, alone = true;    /* all of them are the target's */
@@ -73,16 +71,14 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
          ++s) {
         if ((segment.flags & (PILOT_MET | PILOT_IN_MEDIUM)) != PILOT_MET) return;
         if (!bp_pilot_is_surface(scene, &segment)) continue;
-        if (!aimed && (anywhere ? bp_pilot_is_specular(scene, segment.shape) : segment.shape != target))
-            return;
+        if (!aimed && segment.shape != target) return;
         aimed = true;
         const bool rough = bp_pilot_is_rough(scene, &segment);
         if (!rough && deposits == 0) {
             ++vertices;
             alone = alone && segment.shape == target;
         }
-        if (rough && deposits == 0 && !anywhere)
-            focused = alone && bp_pilot_is_sampled(scene, light, target, vertices);
+        if (rough && deposits == 0) focused = alone && bp_pilot_is_sampled(scene, light, target, vertices);
         if (rough) {
             BpPilotPhoton *photon = &pilot->photons[pilot->photon_count++];
             double carried[3];
@@ -90,7 +86,7 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
             *photon = (BpPilotPhoton){.measure = measure,
                                       .object = bp_pilot_object(scene, segment.shape),
                                       .segments = s + 1,
-                                      .through = through,
+                                      .through = bp_pilot_way(scene, target),
                                       .focused = focused};
             memcpy(photon->point, segment.point, sizeof photon->point);
             memcpy(photon->direction, segment.direction, sizeof photon->direction);
@@ -120,8 +116,6 @@ BpStatus bp_pilot_trace_photons(BpPilot *pilot, BpPilotFlight *flight, BpError *
     BpPilotStart *starts = malloc(flight->batch * sizeof *starts);
     if (starts == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for the paths of a pilot");
     BpStatus status = BP_OK;
-    /* A path that begins by meeting what is rough counts only if it was not aimed. */
-    const cl_uint ends_within = bp_scene_emitting_triangles(pilot->scene) > 0 ? 0 : 1;
     for (uint32_t first = 0; first < BP_PILOT_PHOTONS && status == BP_OK; first += flight->batch) {
         const uint32_t left = BP_PILOT_PHOTONS - first, count = left < flight->batch ? left : flight->batch;
         for (uint32_t i = 0; i < count; ++i) {
@@ -130,7 +124,7 @@ BpStatus bp_pilot_trace_photons(BpPilot *pilot, BpPilotFlight *flight, BpError *
             flight->number_data[2 * i] = first + i;
             flight->number_data[2 * i + 1] = UINT32_MAX; /* a sample that no camera path has */
         }
-        status = bp_pilot_fly(flight, count, BP_PILOT_SEGMENTS_MAX, false, ends_within, err);
+        status = bp_pilot_fly(flight, count, BP_PILOT_SEGMENTS_MAX, false, err);
         for (uint32_t i = 0; i < count && status == BP_OK; ++i) follow_photon(pilot, flight, i, &starts[i]);
     }
     free(starts);

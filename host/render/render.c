@@ -143,11 +143,7 @@ static BpStatus create(const BpScene *scene, const BpRenderOptions *options, con
     bp_effects_analyse(scene, &made->effects);
     made->options.light_sampling = bp_render_light_sampling_of(&made->effects, options);
     made->options.caustics = bp_render_caustics_of(&made->effects, options);
-    /* Triangles that emit are found by chance even where there is nothing else that rays could be sent to. */
-    const bool looks =
-        made->options.light_sampling == BP_LIGHT_SAMPLING_ON ||
-        (options->light_sampling == BP_LIGHT_SAMPLING_ON && bp_scene_emitting_triangles(scene) > 0);
-    if (looks && !options->samples_only) {
+    if (made->options.light_sampling == BP_LIGHT_SAMPLING_ON && !options->samples_only) {
         BP_TRY_GOTO(status, bp_pilot_aim(scene, &made->aim, err), failed);
         made->has_pilot = bp_pilot_is_needed(scene, &made->aim);
         if (!made->has_pilot) bp_pilot_aim_clear(&made->aim);

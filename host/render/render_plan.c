@@ -60,8 +60,17 @@ static uint32_t choose_effects(const BpEffects *effects, const BpRenderOptions *
         options->all_effects ? BP_EFFECTS_ALL : effects->bits | (options->extra_effects & BP_EFFECTS_ALL);
     if (bp_render_caustics_of(effects, options) == BP_CAUSTICS_ON) wanted |= 1u << BP_EFFECT_CAUSTICS;
     if (options->light_sampling == BP_LIGHT_SAMPLING_OFF)
-        wanted &= ~(1u << BP_EFFECT_LAMPS | 1u << BP_EFFECT_CAUSTICS);
+        wanted &= ~(1u << BP_EFFECT_LAMPS | 1u << BP_EFFECT_CAUSTICS | 1u << BP_EFFECT_TRIANGLE_LAMPS);
     return wanted;
+}
+
+/* Whether a kernel needs its code for spheres even if there are none: media are flown through by it, and rays
+ * are sent by it to what is not a triangle. */
+static bool needs_spheres(uint32_t effects) {
+    const uint32_t others = 1u << BP_EFFECT_DISCS | 1u << BP_EFFECT_ENVIRONMENT | 1u << BP_EFFECT_CAUSTICS;
+    return bp_effects_has(effects, BP_EFFECT_MEDIA) ||
+           (bp_effects_has(effects, BP_EFFECT_LAMPS) &&
+            (!bp_effects_has(effects, BP_EFFECT_TRIANGLE_LAMPS) || (effects & others) != 0));
 }
 
 static bool choose_tree(const BpScene *scene, const BpRenderOptions *options) {
@@ -80,10 +89,7 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
     bp_effects_analyse(scene, &effects);
     setup->program.effects = choose_effects(&effects, options);
     setup->program.tree = choose_tree(scene, options);
-    /* Discs and images of the sky are sampled, and media flown through, by code for spheres. */
-    setup->program.triangles_alone = effects.triangles_alone && !options->all_effects &&
-                                     !bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS) &&
-                                     !bp_effects_has(setup->program.effects, BP_EFFECT_MEDIA);
+    setup->program.triangles_alone = effects.triangles_alone && !needs_spheres(setup->program.effects);
 #define SETTING(type, member, option, plural) setup->program.member = options->member;
     BP_SETTING_LIST(SETTING)
 #undef SETTING

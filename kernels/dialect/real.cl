@@ -11,7 +11,7 @@
  *   SAMPLES_PER_ITEM  pixel samples that it traces in all
  *   GROUP_MAX         work-items in a work-group of the sample form, at most
  *   EFFECT_...        0 or 1, one for each effect
- *   TRIANGLES_ALONE   0 or 1: there are no spheres, not even as lamps or boundaries of media
+ *   TRIANGLES_ALONE   0 or 1: there are no spheres, no media, and no part of the sky that rays are sent to
  *   ACCELERATION_TREE 0 or 1: spheres are found through a tree, or are a list
  *
  * Rounding is part of the product: no contraction of a*b+c unless fma() is written. */
@@ -66,10 +66,11 @@ typedef REFINED refined;
 #define WITH_SPHERE(sphere)
 #endif
 /* Lamps are sampled where the scene has any, at surfaces that scatter into many directions and in media. They are
- * spheres, in a tree, discs in the sky, and an image around the scene. */
+ * spheres and triangles, in a tree, discs in the sky, and an image around the scene. */
 #define IS_LIT (EFFECT_LAMBERTIAN || EFFECT_METAL || EFFECT_MEDIA || EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL || \
                 EFFECT_GLOSSY || EFFECT_ROUGH_DIELECTRIC)
 #define SAMPLES_LAMP_TREE (EFFECT_LAMPS && EFFECT_EMISSION && IS_LIT)
+#define SAMPLES_TRIANGLES (SAMPLES_LAMP_TREE && EFFECT_TRIANGLES && EFFECT_TRIANGLE_LAMPS)
 #define SAMPLES_DISCS (EFFECT_LAMPS && EFFECT_DISCS && IS_LIT)
 #define SAMPLES_ENVIRONMENT (EFFECT_LAMPS && EFFECT_ENVIRONMENT && IS_LIT)
 #define SAMPLES_SKY (SAMPLES_DISCS || SAMPLES_ENVIRONMENT)

@@ -34,20 +34,15 @@ static vbool stands_lit(const Path *path, vbool moving) {
 #endif
 }
 
-#if SAMPLES_LAMPS
-#define PILOT_ALWAYS PILOT_TRACED
-#else
-#define PILOT_ALWAYS (PILOT_TRACED | PILOT_UNTOLD)
-#endif
 
 /* One segment of one lane. */
 static void store_segment(const LaneReals *values, uint lane, __global real *records) {
     for (uint i = 0; i < (uint)PILOT_REALS; ++i) records[i] = values[i].of[lane];
 }
 
-/* `numbers`: a pixel and a sample for each path. `starts`: only if not `from_camera`. A path ends at a vertex that a ray to
- * a lamp can light, if it is one of its first `ends_within`. */
-__kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segments, uint from_camera, uint ends_within,
+/* `numbers`: a pixel and a sample for each path. `starts`: only if not `from_camera`. A camera's path ends at the first
+ * vertex that a ray to a lamp can light, another if its first is one. */
+__kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segments, uint from_camera,
                                     __global const uint *numbers, __global const real *starts, __global real *records,
                                     __global uint *marks) {
     const uint first = get_global_id(0) * LANE_COUNT;
@@ -100,9 +95,9 @@ __kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segme
             store_segment(values, lane, records + place * PILOT_REALS);
             marks[place * PILOT_UINTS + PILOT_SHAPE] = is_met >> lane & 1u ? shapes.of[lane] : NO_SPHERE;
             marks[place * PILOT_UINTS + PILOT_FLAGS] =
-                PILOT_ALWAYS | (is_met >> lane & 1u) * PILOT_MET | (goes_on >> lane & 1u) * PILOT_GOES_ON | (is_lit >> lane & 1u) * PILOT_LIT |
+                PILOT_TRACED | (is_met >> lane & 1u) * PILOT_MET | (goes_on >> lane & 1u) * PILOT_GOES_ON | (is_lit >> lane & 1u) * PILOT_LIT |
                 (in_medium >> lane & 1u) * PILOT_IN_MEDIUM;
         }
-        if (s < ends_within) path.alive = path.alive & vbool_not(lit);
+        if (from_camera || s == 0) path.alive = path.alive & vbool_not(lit);
     }
 }

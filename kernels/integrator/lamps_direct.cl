@@ -6,7 +6,7 @@
  * densities, and so does what a ray to a lamp brings, with the lobe's own weight in its direction.
  *
  * In:    paths that wait to be lit, or a lamp that a path has hit.   Out: paths with that light, or the weight of the hit.
- * Knows: lamps.cl, discs.cl, scatter.cl, vary_surface.cl, flight.cl, the closest hit.   Does not know: how a path continues.
+ * Knows: lamps.cl, triangle_lamps.cl, discs.cl, scatter.cl, vary_surface.cl, flight.cl, the closest hit.   Does not know: how a path continues.
  *
  * A ray to a lamp passes the boundaries of media as a path does: each begins another of its segments, of which it has no more
  * than the path. So both ways still have the same lengths. */
@@ -38,11 +38,19 @@ static Vec3 throughput_along(const Path *path, Vec3 direction) {
 #endif
 
 #if SAMPLES_LAMP_TREE
-/* The weight of the radiance of a lamp in `slot` that the path has hit; `hit`: these lanes have, from outside. */
-static vreal lamp_hit_weight(const Scene *scene, const Path *path, vuint slot, const Sphere *sphere, vbool hit) {
+/* The weight of the radiance of a lamp in `slot` that the path has hit; `hit`: these lanes have, a sphere from outside. */
+static vreal lamp_hit_weight(const Scene *scene, const Path *path, vuint slot, WITH_SPHERE(const Sphere *sphere) vbool hit) {
     vbool shared = hit & is_lit_lobe(&path->lobe) & vbool_of_uint(vertex_slot_of(path) != slot);
     if (!any_lane(shared)) return splat(1);
+#if SAMPLES_TRIANGLES
+#if !SPHERES_MET
+    const Sphere *const sphere = 0;
+#endif
+    LampCone cone = lamp_cone(vertex_of(path), sphere);
+    see_triangle(scene, vertex_of(path), slot, shared, &cone);
+#else
     const LampCone cone = lamp_cone(vertex_of(path), sphere);
+#endif
     shared = shared & cone.outside;
     const vreal probability =
         lamp_probability(scene, vertex_of(path), &path->lobe, path_time(path), path->lamp_sum, slot, shared);
@@ -59,6 +67,7 @@ static Vec3 radiance_of_sphere(const Scene *scene, vuint slot) {
 }
 #endif
 
+#if SPHERES_MET
 /* How far along its ray a lamp is. A direction that rounding has put past a tiny one stands for one that meets it. */
 static vrefined distance_to_lamp(const Ray *ray, const LampChoice *choice, const LampCone *cone) {
     vrefined t;
@@ -66,8 +75,9 @@ static vrefined distance_to_lamp(const Ray *ray, const LampChoice *choice, const
     const vbool met = sphere_intersect(ray, &choice->sphere, &t, &enters);
     return choose_refined(met, t, to_refined(cone_distance(cone, choice->sphere.radius, choice->rest)));
 }
+#endif
 
-/* What a ray to the lamp meets first. No point of the lamp that can be seen is nearer than distance - radius, nor
+/* What a ray to the lamp meets first. Of a triangle that is decided at once. No point of the lamp that can be seen is nearer than distance - radius, nor
  * farther than where a tangent touches: what is met before the one hides the lamp, what is not met before the other
  * does not, and only in between the lamp's own root along the rounded direction has to tell, by the rule for ties. */
 static Hit first_seen(const Scene *scene, const Ray *ray, const LampChoice *choice, const LampCone *cone,
@@ -76,12 +86,20 @@ static Hit first_seen(const Scene *scene, const Ray *ray, const LampChoice *choi
     Hit lamp;
     const vreal slack = cone->distance * R(0x1p-18);
     lamp.t = to_refined(cone->tangent + slack);
+#if SAMPLES_TRIANGLES
+    const vbool flat = active & is_triangle(geometry, choice->slot);
+    if (any_lane(flat)) lamp.t = choose_refined(flat, distance_to_triangle(geometry, ray, choice->slot, flat), lamp.t);
+#endif
     lamp.slot = choice->slot;
     lamp.enters = vbool_all;
     lamp.bound = upper_bound(lamp.t);
     Hit first = intersect_closer(geometry, ray, active, lamp);
-#if SAMPLES_LAMP_TREE /* nothing is close to a lamp at infinity */
+#if SAMPLES_LAMP_TREE && SPHERES_MET /* nothing is close to a lamp at infinity */
+#if SAMPLES_TRIANGLES
+    const vbool other = active & vbool_not(flat) & vbool_of_uint(first.slot != choice->slot);
+#else
     const vbool other = active & vbool_of_uint(first.slot != choice->slot);
+#endif
     const vbool close =
         other & vbool_of_refined(first.t >= to_refined(cone->distance - choice->sphere.radius - slack));
     if (any_lane(close))
@@ -159,12 +177,22 @@ static LampWay pass_boundaries(const Scene *scene, const Path *path, vbool activ
 /* What the lamp in a slot sends along the ray that was sent to it, in the lanes `visible`: light that varies depends on where the
  * ray meets the lamp, or passes it where rounding has put it past a tiny one. */
 static Vec3 radiance_along(const Scene *scene, const Ray *ray, const Sphere *sphere, vuint slot, vbool visible) {
+#if SPHERES_MET
     vrefined t;
     vbool enters;
     Point point;
     Vec3 outward;
     sphere_intersect(ray, sphere, &t, &enters);
     sphere_surface(ray, sphere, slot, t, vbool_all, &point, &outward);
+#else
+    Point point = ray->origin;
+    Vec3 outward = ray->direction;
+#endif
+#if SAMPLES_TRIANGLES
+    Hit hit;
+    hit.slot = slot;
+    surface_of_triangle(&scene->geometry, ray, &hit, visible, &point, &outward);
+#endif
     return vary_radiance(scene, slot, &point, outward, visible, radiance_of_sphere(scene, slot));
 }
 #elif SAMPLES_LAMP_TREE
@@ -218,6 +246,9 @@ static LampChoice choose_light(const Scene *scene, const Path *path, vuint bounc
 #if SAMPLES_LAMP_TREE
     choice = choose_lamp(scene, point, lobe, path_time(path), path->key, bounce, u, active);
     *cone = lamp_cone(point, &choice.sphere);
+#if SAMPLES_TRIANGLES
+    see_triangle(scene, point, choice.slot, active, cone);
+#endif
 #else
     choice.slot = splat_uint(0);
     choice.sphere.centre = zero3();
@@ -262,7 +293,13 @@ LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
     path->lamp_sum = choose(active, choice.sum, path->lamp_sum);
     active = active & (choice.probability > splat(0)) & cone.outside & vbool_of_uint(choice.slot != path->own_slot);
     Ray ray = path_ray(path);
+#if SPHERES_MET
     ray.direction = sample_cone(&cone, choice.rest, v);
+#endif
+#if SAMPLES_TRIANGLES
+    const vbool flat = active & is_triangle(&scene->geometry, choice.slot);
+    if (any_lane(flat)) ray.direction = choose3(flat, sample_triangle(&cone, choice.rest, v), ray.direction);
+#endif
 #if EFFECT_ROUGH_DIELECTRIC
     ray.inward = turned_inward(lobe, path->direction, ray.direction, path->inward);
 #endif
@@ -287,6 +324,9 @@ LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
     if (any_lane(vbool_of_uint(medium != splat_uint(0)))) {
         vreal length = cone_distance(&cone, choice.sphere.radius, choice.rest);
         if (any_lane(way.passed)) length = choose(way.passed, to_real(distance_to_lamp(&ray, &choice, &cone)), length);
+#if SAMPLES_TRIANGLES
+        length = choose(flat, to_real(hit.t), length);
+#endif
         const vbool far = vbool_of_uint(choice.slot >= splat_uint(DISC_SLOT));
         light = multiply3(light, transmittance(scene, medium, choose(far, splat(REAL_LARGE), length)));
     }

@@ -19,11 +19,11 @@
 /* A child of a node: a lamp, or the ball around some. */
 typedef struct LampChild {
     Vec3 centre;
-    vreal radius; /* negative: a ball around some */
+    vreal radius; /* negative: a ball around some, or around a triangle */
     vreal power;  /* 0: there is no such child, nor any after it */
 } LampChild;
 
-#if EFFECT_MOTION
+#if EFFECT_MOTION && SPHERES_MET
 /* Brings a child to where it is at a time; `word`: its word. */
 static void move_child(const Scene *scene, vuint word, vreal time, LampChild *child) {
     const vbool lamp = child->radius > splat(0);
@@ -148,7 +148,15 @@ FORCE_INLINE static vreal lamp_importances(const Scene *scene, vuint node, int r
 
 #endif
 
-/* A lamp, chosen for a point. */
+#if !SPHERES_MET
+/* Around a triangle, or some. */
+typedef struct Sphere {
+    Vec3 centre;
+    vreal radius;
+} Sphere;
+#endif
+
+/* A lamp, chosen for a point. `sphere`: of a triangle, with a radius below 0, what importance takes it for. */
 typedef struct LampChoice {
     vuint slot;
     Sphere sphere;
@@ -228,8 +236,8 @@ static vreal share_of_child(const Scene *scene, vuint node, const Point *point, 
     return choose(chosen > splat(0), divide(chosen, sum), splat(0));
 }
 
-/* The probability with which choose_lamp chooses the sphere in `slot`, when it has found the sum `sum`; 0 if the sphere
- * is not in the tree. */
+/* The probability with which choose_lamp chooses the lamp in `slot`, when it has found the sum `sum`; 0 if it is not in the
+ * tree. */
 static vreal lamp_probability(const Scene *scene, const Point *point, const Lobe *lobe, vreal time, vreal sum, vuint slot,
                               vbool active) {
     const uint mask = LAMP_WIDTH - 1u;
@@ -263,7 +271,12 @@ typedef struct LampCone {
     vreal tangent;   /* the distance at which a ray touches the sphere */
     vreal cap;       /* 1 - cos of half its angle; 2 pi times this is its solid angle */
     vbool outside;   /* the point lies outside, and not too close; else the rest means nothing */
+#if SAMPLES_TRIANGLES
+    TriangleView view; /* of a triangle, whose cap is its solid angle over 2 pi, and which has none of the first four */
+#endif
 } LampCone;
+
+#if SPHERES_MET
 
 /* 1 - cos(sigma) as sin^2(sigma) / (1 + cos(sigma)), and cos^2(sigma) as the power's share of the squared distance:
  * nothing cancels, however small or close the lamp. */
@@ -308,4 +321,13 @@ static vreal cone_distance(const LampCone *cone, vreal radius, vreal u) {
         radius * square_root(at_least(divide((splat(1) - u) * (splat(2) - k * (splat(1) + u)), splat(2) - k), splat(0)));
     return divide(cone->power, fma(cone->distance, splat(1) - u * k, half_chord));
 }
+#else
+static LampCone lamp_cone(const Point *point, const Sphere *sphere) {
+    LampCone cone;
+    cone.axis = zero3();
+    cone.distance = cone.power = cone.tangent = cone.cap = splat(0);
+    cone.outside = vbool_none;
+    return cone;
+}
+#endif
 #endif

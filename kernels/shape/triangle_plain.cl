@@ -22,6 +22,8 @@
 #define triangle_is_candidate LANED(triangle_is_candidate)
 #define triangle_decide LANED(triangle_decide)
 #define triangle_surface LANED(triangle_surface)
+#define TriangleView LANED(TriangleView)
+#define triangle_view LANED(triangle_view)
 
 typedef struct Triangle {
     Vec3 a, b, c;
@@ -93,4 +95,34 @@ FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triang
     const vbool none = vbool_not(dot3(n, n) > splat(0));
     *normal = normalise3(choose3(none, vec3(splat(0), splat(0), splat(1)), n));
 }
+
+#if EFFECT_TRIANGLE_LAMPS
+#undef TRIANGLE_FLAT
+#undef TRIANGLE_BESIDE
+#undef TRIANGLE_SEEN_MIN
+#define TRIANGLE_FLAT R(0x1p-16)
+#define TRIANGLE_BESIDE R(0x1p-10)
+#define TRIANGLE_SEEN_MIN R(0x1p-100)
+typedef struct TriangleView {
+    Vec3 a, b, c;
+    vreal height, turn, base;
+} TriangleView;
+
+static vbool triangle_view(const Point *point, const Triangle *triangle, TriangleView *view) {
+    const Vec3 a = subtract3(triangle->a, point->high), b = subtract3(triangle->b, point->high),
+               c = subtract3(triangle->c, point->high);
+    const Vec3 normal = cross3(subtract3(triangle->b, triangle->a), subtract3(triangle->c, triangle->a));
+    const vreal to_a = square_root(dot3(a, a)), to_b = square_root(dot3(b, b)), to_c = square_root(dot3(c, c));
+    const vreal volume = fabs(dot3(a, normal)), off = to_a * (fabs(normal.x) + fabs(normal.y) + fabs(normal.z));
+    view->a = scale3(divide(splat(1), to_a), a);
+    view->b = scale3(divide(splat(1), to_b), b);
+    view->c = scale3(divide(splat(1), to_c), c);
+    view->height = divide(divide(divide(volume, to_a), to_b), to_c);
+    view->turn = dot3(view->c, add3(view->a, view->b));
+    view->base = splat(1) + dot3(view->a, view->b);
+    const vbool aslant = volume > TRIANGLE_FLAT * off, seen = view->height > splat(TRIANGLE_SEEN_MIN);
+    const vbool apart = view->height + fabs(view->turn + view->base) > splat(TRIANGLE_BESIDE);
+    return aslant & seen & apart;
+}
+#endif
 #endif

@@ -9,6 +9,7 @@
  *        triangle_intersect     the same, for every triangle
  *        triangle_beside_sphere the same, for a ray that leaves a sphere
  *        triangle_surface       the point that was met, as an origin for the next ray, and the outward unit normal
+ *        triangle_view          what a point sees of it, for rays to a triangle that emits
  * Knows: ray.cl, wide.cl.   Does not know: trees, materials. Read once for each number of lanes.
  *
  * The ray is sheared to the axis along which it is longest, x and y of each vertex then lie in a plane, in which the ray
@@ -55,6 +56,9 @@
 #define sides_of LANED(sides_of)
 #define know_edge LANED(know_edge)
 #define Sides LANED(Sides)
+#define TriangleView LANED(TriangleView)
+#define triangle_view LANED(triangle_view)
+#define way_from LANED(way_from)
 
 typedef struct Triangle {
     Vec3 a, b, c;
@@ -358,4 +362,51 @@ FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triang
     point->error = fma(one_norm(to_b) + one_norm(to_c), splat(WIDE_POINT_ERROR), size * R(0x1p-45));
     *normal = wide_unit(wide_cross(to_b, to_c));
 }
+
+#if EFFECT_TRIANGLE_LAMPS
+#undef TRIANGLE_FLAT
+#undef TRIANGLE_BESIDE
+#undef TRIANGLE_SEEN_MIN
+#define TRIANGLE_FLAT R(0x1p-16)   /* the sine below which a triangle is seen from its edge */
+#define TRIANGLE_BESIDE R(0x1p-16) /* below it nothing is left of the sum, so the point lies at an edge */
+#define TRIANGLE_SEEN_MIN R(0x1p-100)
+/* A triangle seen from a point: `a`, `b` and `c`, unit vectors to its vertices; `height`, |a.(b x c)|; `turn`, a.c + b.c; `base`,
+ * 1 + a.b. The tangent of half its solid angle is height / (base + turn) (A. van Oosterom and J. Strackee, "The Solid
+ * Angle of a Plane Triangle", 1983). */
+typedef struct TriangleView {
+    Vec3 a, b, c;
+    vreal height, turn, base;
+} TriangleView;
+
+static WideVec way_from(const Point *point, Vec3 to) {
+    WideVec way;
+    way.x = wide_difference(to.x, point->high.x, point->low.x);
+    way.y = wide_difference(to.y, point->high.y, point->low.y);
+    way.z = wide_difference(to.z, point->high.z, point->low.z);
+    return way;
+}
+
+/* False where rays are not sent to the triangle: the point lies in its plane or on it, as far as can be told, or beside an edge,
+ * or sees too little of it for a real. The volume is that of the edges, so nothing cancels however small the triangle. */
+static vbool triangle_view(const Point *point, const Triangle *triangle, TriangleView *view) {
+    const WideVec a = way_from(point, triangle->a), b = way_from(point, triangle->b), c = way_from(point, triangle->c);
+    const WideVec normal = wide_cross(wide_from(triangle->a, triangle->b), wide_from(triangle->a, triangle->c));
+    const Wide volume = wide_dot(a, normal);
+    const Wide to_a = wide_root(wide_dot(a, a)), to_b = wide_root(wide_dot(b, b)), to_c = wide_root(wide_dot(c, c));
+    const Wide inverse = wide_divide(wide(splat(1)), wide_multiply(to_a, wide_multiply(to_b, to_c)));
+    const Wide ab = wide_multiply(wide_multiply(wide_dot(a, b), to_c), inverse);
+    const Wide around = wide_madd(wide_dot(a, c), to_b, wide_multiply(wide_dot(b, c), to_a));
+    view->a = scale3(divide(splat(1), wide_near(to_a)), vec3(wide_near(a.x), wide_near(a.y), wide_near(a.z)));
+    view->b = scale3(divide(splat(1), wide_near(to_b)), vec3(wide_near(b.x), wide_near(b.y), wide_near(b.z)));
+    view->c = scale3(divide(splat(1), wide_near(to_c)), vec3(wide_near(c.x), wide_near(c.y), wide_near(c.z)));
+    view->height = fabs(wide_near(wide_multiply(volume, inverse)));
+    view->turn = wide_near(wide_multiply(around, inverse));
+    view->base = wide_near(wide_add_real(ab, splat(1)));
+    const vreal off = fma(wide_near(to_a), splat(TRIANGLE_FLAT), R(4.0) * point->error);
+    const vreal below = wide_near(wide_add_real(wide_add(ab, wide_multiply(around, inverse)), splat(1)));
+    const vbool aslant = fabs(wide_near(volume)) > off * one_norm(normal), seen = view->height > splat(TRIANGLE_SEEN_MIN);
+    const vbool apart = fma(view->height, view->height, below * below) > splat(TRIANGLE_BESIDE * TRIANGLE_BESIDE);
+    return aslant & seen & apart;
+}
+#endif
 #endif

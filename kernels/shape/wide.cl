@@ -19,6 +19,7 @@
 #define wide_multiply LANED(wide_multiply)
 #define wide_madd LANED(wide_madd)
 #define wide_divide LANED(wide_divide)
+#define wide_root LANED(wide_root)
 #define wide_area LANED(wide_area)
 #define wide_above_0 LANED(wide_above_0)
 #define wide_below_0 LANED(wide_below_0)
@@ -49,6 +50,9 @@ static Wide wide_add_real(Wide a, vreal b) { return a + to_refined(b); }
 static Wide wide_multiply(Wide a, Wide b) { return a * b; }
 static Wide wide_madd(Wide a, Wide b, Wide c) { return fma(a, b, c); }
 static Wide wide_divide(Wide a, Wide b) { return divide_refined(a, b); }
+#if EFFECT_TRIANGLE_LAMPS
+static Wide wide_root(Wide a) { return square_root_refined(a); }
+#endif
 FORCE_INLINE static Wide wide_area(Wide x1, Wide y1, Wide x2, Wide y2) {
     const Wide p = x1 * y2, q = y1 * x2;
     return (p - q) + (fma(x1, y2, -p) - fma(y1, x2, -q));
@@ -112,6 +116,17 @@ static Wide wide_divide(Wide a, Wide b) {
     product.low = -product.low;
     return pair_quick_sum(quotient.high, divide(wide_add(a, product).high, b.high));
 }
+#if EFFECT_TRIANGLE_LAMPS
+/* One step of Newton's method. */
+static Wide wide_root(Wide a) {
+    const Wide root = wide(square_root(a.high));
+    Wide square = wide_multiply(root, root);
+    square.high = -square.high;
+    square.low = -square.low;
+    const vbool some = root.high > splat(0);
+    return pair_quick_sum(root.high, divide(wide_add(a, square).high, choose(some, R(2.0) * root.high, splat(1))));
+}
+#endif
 FORCE_INLINE static Wide wide_area(Wide x1, Wide y1, Wide x2, Wide y2) {
     const Wide p = wide_multiply(x1, y2);
     Wide q = wide_multiply(y1, x2);

@@ -5,7 +5,7 @@
  *
  * Plain arithmetic, so all forms give the same bits on every device. Both are right to 2 ROUNDOFF and what the dot products
  * lose, another 4 ROUNDOFF; tests/textures measures it. */
-#if EFFECT_TEXTURES || EFFECT_ENVIRONMENT
+#if EFFECT_TEXTURES || EFFECT_ENVIRONMENT || SAMPLES_TRIANGLES
 /* atan(r) / (2 pi r) as a polynomial of r^2, |r| <= 1/4 (Chebyshev interpolation: float to 1.5e-10, double to 6.4e-20 of
  * its value, before rounding). */
 static vreal turn_over_tangent(vreal z) {
@@ -48,6 +48,7 @@ static vreal turn_of(vreal x, vreal y) {
     return choose(y < splat(0), R(1.0) - turn, turn);
 }
 
+#if EFFECT_TEXTURES || EFFECT_ENVIRONMENT
 /* `seam`, `east`, `pole`: to longitude 0, to a quarter, to the north pole. `u`: around, from 0 to 1, both of which are the seam;
  * `v`: from the south pole, 0, to the north pole, 1. The length of the normal does not matter. */
 static void sphere_map(Vec3 normal, Vec3 seam, Vec3 east, Vec3 pole, vreal *u, vreal *v) {
@@ -55,4 +56,5 @@ static void sphere_map(Vec3 normal, Vec3 seam, Vec3 east, Vec3 pole, vreal *u, v
     *u = turn_of(x, y);
     *v = at_most(splat(2) * turn_of(-height, square_root(fma(x, x, y * y))), splat(1));
 }
+#endif
 #endif

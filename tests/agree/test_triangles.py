@@ -197,7 +197,8 @@ class Triangles(unittest.TestCase):
         mirror = {"corner": [-2, 0, -3], "u": [4, 0, 0], "v": [0, 3, 0], "material": "mirror"}
         shining = {**mirror, "material": "lamp"}
         for members, by_triangles in (({"spheres": [ball, lamp], "quads": [FLOOR]}, 0), ({"spheres": [lamp], "quads": [FLOOR, mirror]}, 1),
-                                      ({"quads": [FLOOR, shining]}, 0), ({"spheres": [ball], "quads": [FLOOR]}, None),
+                                      ({"quads": [FLOOR, shining]}, None), ({"quads": [FLOOR, mirror, {**mirror, "corner": [-2, 0, 9], "material": "lamp"}]}, 1),
+                                      ({"spheres": [ball], "quads": [FLOOR]}, None),
                                       ({"quads": [FLOOR, mirror]}, None)):
             made = self.run_ballpark(scene(**members), "render", "--spp", "2", "-o", "p.pfm", "--stats", "p.json")
             self.assertEqual(made.returncode, 0, made.stderr)

@@ -107,6 +107,10 @@ int main(int argc, char **argv) {
         options.effects = BP_EFFECTS_ALL & ~(1u << BP_EFFECT_LAMPS | 1u << BP_EFFECT_MEDIA);
         options.triangles_alone = true;
         status = dump(argv[1], &options, &err);
+        /* Or rays are sent to triangles, and to nothing else. */
+        options.effects = BP_EFFECTS_ALL & ~(1u << BP_EFFECT_MEDIA | 1u << BP_EFFECT_DISCS |
+                                             1u << BP_EFFECT_ENVIRONMENT | 1u << BP_EFFECT_CAUSTICS);
+        if (status == BP_OK) status = dump(argv[1], &options, &err);
     }
     if (status != BP_OK) fprintf(stderr, "dump_kernels: %s\n", err.message);
     bp_error_clear(&err);

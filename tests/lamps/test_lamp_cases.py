@@ -1,5 +1,5 @@
 """Hard cases of light sampling through the real program, with sampling and without (cases.py,
-disc_cases.py, image_cases.py, motion_cases.py and boundary_cases.py have the scenes).
+disc_cases.py, image_cases.py, motion_cases.py, boundary_cases.py and triangle_cases.py have the scenes).
 
     test_lamp_cases.py PROGRAM SOURCE_DIR [--deep] [--on] [--own] [NUMBER[.PLACE]...]
 
@@ -31,6 +31,7 @@ import cases
 import disc_cases
 import image_cases
 import motion_cases
+import triangle_cases
 from pfm import read_pfm
 
 Z_MAX = 5.2
@@ -166,7 +167,8 @@ def run_case(bench, case, on_alone=False):
 
 def main():
     program, _, *rest = sys.argv[1:]
-    numbered = {**cases.NUMBERED, **disc_cases.NUMBERED, **image_cases.NUMBERED, **motion_cases.NUMBERED, **boundary_cases.NUMBERED}
+    numbered = {**cases.NUMBERED, **disc_cases.NUMBERED, **image_cases.NUMBERED, **motion_cases.NUMBERED, **boundary_cases.NUMBERED,
+                **triangle_cases.NUMBERED}
     deep, on_alone = "--deep" in rest, "--on" in rest
     chosen = [word.partition(".") for word in rest if not word.startswith("--")] or [(number, "", "") for number in sorted(numbered)]
     failures = 0

@@ -1,4 +1,5 @@
-/* test_lamp_tree.c: the balls of the tree of lamps are around their lamps, all of the time. */
+/* test_lamp_tree.c: the balls of the tree of lamps are around their lamps, all of the time; what stands for
+ * triangles. */
 #define BP_HOST
 #include "base/random.h"
 #include "base/status.h"
@@ -128,8 +129,44 @@ static void slots_of_a_lamp_around_everything(void **state) {
     bp_packed_clear(&packed);
 }
 
+/* Of triangles that emit: the ball around the corners' middle, luminance times area over pi; no power, no
+ * lamp. */
+static void triangles_that_emit(void **state) {
+    (void)state;
+    BpMaterial materials[] = {{.name = (char *)"lamp", .kind = BP_MATERIAL_DIFFUSE_LIGHT, .emit = {3, 3, 3}},
+                              {.name = (char *)"matte", .kind = BP_MATERIAL_LAMBERTIAN}};
+    BpTriangle triangles[] = {{.vertices = {{0, 0, -9}, {3, 0, -9}, {0, 6, -9}}},
+                              {.vertices = {{0, 0, -7}, {3, 0, -7}, {0, 6, -7}}, .material = 1},
+                              {.vertices = {{1e-25, 0, 0}, {2e-25, 0, 0}, {0, 1e-25, 0}}}};
+    for (size_t t = 0; t < 3; ++t) triangles[t].albedo = BP_NO_ALBEDO;
+    BpScene scene = {
+        .materials = materials, .material_count = 2, .triangles = triangles, .triangle_count = 3};
+    scene.camera = (BpCamera){.width = 4,
+                              .height = 4,
+                              .aspect_ratio = 1,
+                              .vfov_degrees = 90,
+                              .lookat = {0, 0, -1},
+                              .vup = {0, 1, 0},
+                              .focus_dist = 10};
+    const BpTreeOptions options = {8, true, false, 1, false};
+    BpPacked packed;
+    BpError err = {0};
+    assert_int_equal(bp_scene_pack(&scene, &options, true, true, &packed, &err), BP_OK);
+    assert_int_equal(packed.lamps.lamp_count, 1);
+    const uint32_t slot = packed.lamps.lamp_children[0] & ~CHILD_LEAF;
+    assert_int_equal(packed.tree.slot_sphere[slot], 0);
+    for (uint32_t s = 0; s < packed.lamps.slot_count; ++s)
+        assert_int_equal(packed.lamps.slot_lamp[s], s == slot ? 0 : NO_LAMP);
+    const double expected[5] = {1, 2, -9, -sqrt(1 + 16), 9 / 3.14159265358979323846};
+    for (uint32_t row = 0; row < 5; ++row)
+        assert_true(fabs(lamp_number(&packed, 0, row, 0) - expected[row]) < 1e-6);
+    assert_true(lamp_number(&packed, 0, 4, 1) == 0);
+    bp_packed_clear(&packed);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(balls_hold_lamps_that_move),
-                                       cmocka_unit_test(slots_of_a_lamp_around_everything)};
+                                       cmocka_unit_test(slots_of_a_lamp_around_everything),
+                                       cmocka_unit_test(triangles_that_emit)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

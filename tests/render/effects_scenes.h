@@ -52,6 +52,9 @@ static inline bool effects_can_occur(uint32_t bits, bool tree) {
     if (bp_effects_has(bits, BP_EFFECT_TRIANGLES) &&
         (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL))) == 0)
         return false;
+    /* Rays are sent to them where they are sent to others, and there are some. */
+    const uint32_t shining = EFFECT_BIT(TRIANGLES) | EFFECT_BIT(LAMPS) | EFFECT_BIT(EMISSION);
+    if (bp_effects_has(bits, BP_EFFECT_TRIANGLE_LAMPS) && (bits & shining) != shining) return false;
     /* Of an image around it knows no light. */
     if (bp_effects_has(bits, BP_EFFECT_SHADOW_CATCHER) && bp_effects_has(bits, BP_EFFECT_ENVIRONMENT))
         return false;
@@ -233,7 +236,8 @@ static inline void effects_spheres(EffectsScene *made, bool tree) {
 
 /* A folded wall of two triangles that share an edge and lie partly behind spheres, and two that cross each
  * other. */
-static inline void effects_triangles(EffectsScene *made) {
+/* The last one emits where one does. */
+static inline void effects_triangles(EffectsScene *made, uint32_t bits) {
     static const double at[4][3][3] = {{{-4, -0.5, -6}, {0.5, -0.5, -5}, {0.5, 3, -5}},
                                        {{-4, -0.5, -6}, {0.5, 3, -5}, {-4, 3, -6}},
                                        {{1, -0.4, -3}, {3, -0.4, -3}, {2, 1.5, -2}},
@@ -244,6 +248,9 @@ static inline void effects_triangles(EffectsScene *made) {
         memcpy(made->triangles[i].vertices, at[i], sizeof at[i]);
         made->triangles[i].albedo = BP_NO_ALBEDO;
     }
+    for (uint32_t m = 0; bp_effects_has(bits, BP_EFFECT_TRIANGLE_LAMPS) && m < made->scene.material_count;
+         ++m)
+        if (made->materials[m].emit[0] > 1) made->triangles[3].material = m;
 }
 
 /* Media in most of what light passes through, and around all in every fifth set. */
@@ -311,7 +318,7 @@ static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
             (BpShadowCatcher){.present = true, .normal = {0.28, 0.96, 0}, .distance = -0.25};
     effects_materials(made, bits);
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES)) effects_textures(made, bits);
-    if (bp_effects_has(bits, BP_EFFECT_TRIANGLES)) effects_triangles(made);
+    if (bp_effects_has(bits, BP_EFFECT_TRIANGLES)) effects_triangles(made, bits);
     effects_spheres(made, tree);
     if (bp_effects_has(bits, BP_EFFECT_MOTION)) effects_motion(made);
     if (bp_effects_has(bits, BP_EFFECT_MEDIA)) effects_media(made, bits);

@@ -46,6 +46,7 @@ MARKS = {
     "MOTION": ["path->time", "ray->time"],
     "MEDIA": ["medium_around", "exp_minus", "interface_sample"],
     "CAUSTICS": [],  # FOCUSING
+    "TRIANGLE_LAMPS": [],  # TOGETHER, SHINING
     "TRIANGLES": ["triangle_decide", "load_triangle", "first_triangles"],
     "SHADOW_CATCHER": ["meets_catcher", "light_of_catcher", "lies_in_shadow"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
@@ -58,11 +59,10 @@ SHARED = {
     "surface->refraction_index = ": {"DIELECTRIC", "GLOSSY", "ROUGH_DIELECTRIC"},
     "smith_root": {"ROUGH_METAL", "GLOSSY", "ROUGH_DIELECTRIC"},
     "throughput, vertex->emitted": {"EMISSION", "NORMALS"},
-    "turn_of": {"TEXTURES", "ENVIRONMENT"},
 }
 # Code that needs all of these.
 TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURES", "NOISE"},
-            "image_texture": {"TEXTURES", "IMAGES"}}
+            "image_texture": {"TEXTURES", "IMAGES"}, " TriangleView": {"TRIANGLES", "TRIANGLE_LAMPS"}}
 # Code that needs LAMPS, something to be lit, and one of the effects named.
 LIT = {"LAMBERTIAN", "METAL", "MEDIA", "OREN_NAYAR", "ROUGH_METAL", "GLOSSY", "ROUGH_DIELECTRIC"}
 NEEDING_OTHERS = {
@@ -70,6 +70,8 @@ NEEDING_OTHERS = {
     "choose_disc": {"DISCS", "ENVIRONMENT"}, "sample_environment": {"ENVIRONMENT"}, "environment_hit_weight": {"ENVIRONMENT"},
     "wants_lamps": {"EMISSION", "DISCS", "ENVIRONMENT"}, "first_seen": {"EMISSION", "DISCS", "ENVIRONMENT"},
 }
+# Code that needs LAMPS, something to be lit, and triangles that emit.
+SHINING = ["see_triangle", "sample_triangle", "distance_to_triangle"]
 # Code that needs LAMPS, something to be lit, CAUSTICS, lamps or discs, and glass or mirrors.
 FOCUSING = ["focuser_importance", "chain_root", "follow_chain", "light_through_focuser", "path->chain"]
 
@@ -110,6 +112,10 @@ def complaints(path):
                bool({"METAL", "DIELECTRIC"} & effects))
     found += [f"{path.name}: {mark!r} {'is missing' if focuses else 'is there'}"
               for mark in FOCUSING if (mark in text) != focuses]
+    shines = {"LAMPS", "EMISSION", "TRIANGLES", "TRIANGLE_LAMPS"} <= effects and bool(LIT & effects)
+    found += [f"{path.name}: {mark!r} {'is missing' if shines else 'is there'}" for mark in SHINING if (mark in text) != shines]
+    if ("turn_of" in text) != (shines or bool({"TEXTURES", "ENVIRONMENT"} & effects)):
+        found.append(f"{path.name}: turn_of")
     found += [f"{path.name}: {mark!r} of spheres is missing" for mark in SPHERES if mark not in text]
     return found, bits, len(text)
 

@@ -181,23 +181,28 @@ class Means(cli.ProgramTest):
         self.compare(document, 2048, black)
 
     def test_lamp_of_triangles(self):
-        """To a floor, straight, from either side; and by way of a wall too."""
-        for turned in (False, True):
-            sides = ([1, 0, 0], [0, 0.4, 1])
-            above = self.quad([0.4, 6.5, 0.3], *(sides[::-1] if turned else sides), "lamp")  # behind the camera
-            self.compare(self.room(2, {"lamp": lamp(20)}, above), 1024)
-        # Alone, and beside a lamp that rays are sent to, and which hardly shines.
-        for others in ([], [{"center": [0, 30, 0], "radius": 0.1, "material": "dim"}]):
-            document = self.room(3, {"lamp": lamp(20), "dim": lamp(1e-6)}, self.quad([3, 2.5, 0], [0.6, 0, 0], [0, 0, 0.6], "lamp"),
-                                 self.quad([3.7, 0, -3], [0, 0, 6], [0, 5, 0], "floor"), self.quad([2, 1.9, -3], [3, 0, 0], [0, 0, 6], "floor"),
-                                 spheres=others)
-            self.compare(document, 4096)
+        """Rays are sent to them: nothing is left to chance on the way to a floor, straight or by way of a wall."""
+        document = self.room(3, {"lamp": lamp(20)}, self.quad([3, 2.5, 0], [0.6, 0, 0], [0, 0, 0.6], "lamp"),
+                             self.quad([3.7, 0, -3], [0, 0, 6], [0, 5, 0], "floor"), self.quad([2, 1.9, -3], [3, 0, 0], [0, 0, 6], "floor"))
+        self.assertEqual(self.picture(document, 64)[2]["mean"], 0)
+
+    def test_lamp_of_triangles_in_a_mirror(self):
+        """From either side."""
+        wall = self.quad([2.5, 0.2, -2], [0, 0, 4], [-0.5, 2, 0], "mirror")
+        for sides in (([0, 0.9, 0.3], [0.3, 0, 0.9]), ([0.3, 0, 0.9], [0, 0.9, 0.3])):
+            document = self.room(3, {"mirror": MIRROR, "lamp": lamp(20)}, wall, self.quad([-3.5, 2.2, 0], *sides, "lamp"))
+            black = json.loads(json.dumps(document))
+            black["materials"]["mirror"] = dict(MIRROR, albedo=[0, 0, 0])
+            self.compare(document, 2048, black)
 
     def test_lamp_of_triangles_behind_glass(self):
-        """What meets glass first belongs to the glass, and what does not to nothing."""
-        above = self.quad([2, 6.5, -1], [2, 0, 0], [0, 0, 2], "lamp")  # whose images in the glass are out of sight
-        glass = [{"corners": [[-1.5, 1, -1.5], [0.7, 1.6, 1.5]], "material": "glass"}]
-        self.compare(self.room(6, {"lamp": lamp(20), "glass": EXACT}, above, boxes=glass), 2048)
+        """What meets glass first belongs to the glass, and what does not is sampled."""
+        aside = self.quad([6, 6.5, -1], [2, 0, 0], [0, 0, 2], "lamp")
+        glass = [{"corners": [[2.2, 1, -1.5], [4.4, 1.6, 1.5]], "material": "glass"}]  # out of sight
+        document = self.room(6, {"lamp": lamp(20), "glass": EXACT}, aside, boxes=glass)
+        black = json.loads(json.dumps(document))
+        black["materials"]["glass"] = BLACK
+        self.compare(document, 4096, black)
 
 
 cli.main()

@@ -61,18 +61,15 @@ void bp_unseen_print(const BpScene *scene, const BpUnseenLight *light, double lu
                      FILE *out) {
     char share[32], once[32];
     fprintf(out, "About %s of the light ", bp_format_percent(light->mean / luminance, share, sizeof share));
-    const bool emit = bp_scene_emitting_triangles(scene) > 0;
     if (is_direct(light)) {
-        fprintf(out, "comes straight from %s",
-                emit ? "triangles that emit, to which no rays are sent"
-                     : "lights that are smaller than a pixel");
+        fputs("comes straight from lights that are smaller than a pixel", out);
     } else {
         fputs("comes by way of ", out);
         print_ways(scene, light, out);
     }
     fprintf(out, ", and one sample in %s finds it.", bp_format_count(1 / light->found, once, sizeof once));
     if (is_direct(light)) {
-        fprintf(out, " What helps: %slarger lights, or more samples.", emit ? "spheres as lamps, " : "");
+        fputs(" What helps: larger lights, or more samples.", out);
         return;
     }
     fprintf(out, " What helps: %slarger lamps or discs", caustics ? "--caustics auto, " : "");
