@@ -238,7 +238,8 @@ typedef struct PackedVariation {
  * An empty lane has its center at NaN, which no ray may meet, and radius -1, and only empty ones follow it.
  * Lane l of leaf f is slot f * width + l. What a path needs of a sphere that it has met stands by slot, so
  * that nothing has to be looked up to find it: `slot_sphere`, the sphere's index in the scene (NO_SPHERE when
- * empty); `slot_material`; `slot_albedo`, ALBEDO_REALS each. Sizes in reals: */
+ * empty); `slot_material`; `slot_albedo`, ALBEDO_REALS each. Of triangles without colours of their own the
+ * last has none: it ends with `coloured_slots`, and a colour for each material follows. Sizes in reals: */
 #define LEAF_REALS(width) (4 * (width))
 #define ALBEDO_REALS 3
 /* Leaves from `first_triangles` on are triangles instead, in an array of their own: width reals each of x, y
@@ -343,7 +344,7 @@ typedef struct PackedVariation {
     X(UINTS, packed_uint, target_lamps, target_count, "the table of focusers")
 #define SCENE_ARRAYS_OF_SLOTS(X)                                                                             \
     X(UINTS, packed_uint, slot_material, slots, "the table of sphere materials")                             \
-    X(REALS, real, slot_albedo, slots * ALBEDO_REALS, "the table of sphere colours")
+    X(REALS, real, slot_albedo, colours * ALBEDO_REALS, "the table of sphere colours")
 #define SCENE_ARRAYS_OF_LAMPS(X)                                                                             \
     X(REALS, real, lamps, lamp_nodes * LAMP_NODE_REALS, "the tree of lamps")                                 \
     X(UINTS, packed_uint, lamp_children, lamp_nodes * LAMP_WIDTH, "the tree of lamps")                       \
@@ -354,7 +355,8 @@ typedef struct PackedVariation {
     X(REALS, real, leaves, leaf_count * LEAF_REALS(width), "the spheres")                                    \
     X(REALS, real, leaf_motions, motion_leaves * MOTION_REALS(width), "the spheres' motions")                 \
     X(UINTS, packed_uint, slot_sphere, slots, "the spheres' numbers")
-/* Of kernels that know triangles: after the others, and before the numbers, `first_triangles`. */
+/* Of kernels that know triangles: after the others, and before the numbers, `first_triangles` and
+ * `coloured_slots`. */
 #define SCENE_ARRAYS_OF_TRIANGLES(X)                                                                         \
     X(REALS, real, triangles, triangle_leaves * TRIANGLE_REALS(width), "the triangles")
 #define SCENE_NUMBERS(X)                                                                                     \

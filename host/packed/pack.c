@@ -517,12 +517,28 @@ static void pack_slot_chunk(const Slots *slots, size_t first, size_t count) {
         const Scattered *scattered = used ? &slots->scattered[materials[s]] : &nothing;
         const bool second = used && slots->second[materials[s]] != 0 && is_second(scene, shapes[s]);
         packed->slot_material[first + s] = second ? slots->second[materials[s]] : materials[s];
+        if (first + s >= packed->coloured_slots) continue;
         const float *own =
             scattered->replaced && albedos[s] != BP_NO_ALBEDO ? scene->albedos[albedos[s]] : NULL;
         for (size_t a = 0; a < ALBEDO_REALS; ++a)
             bp_reals_store(packed->slot_albedo, packed->single_precision, ALBEDO_REALS * (first + s) + a,
                            own != NULL ? (double)own[a] : scattered->albedo[a]);
     }
+}
+
+/* After the colours of slots, for those that have none. */
+static void pack_material_colour(const Slots *slots, uint32_t material, const Scattered *scattered) {
+    const BpPacked *packed = slots->packed;
+    for (size_t a = 0; a < ALBEDO_REALS; ++a)
+        bp_reals_store(packed->slot_albedo, packed->single_precision,
+                       ALBEDO_REALS * ((size_t)packed->coloured_slots + material) + a, scattered->albedo[a]);
+}
+
+static bool triangles_have_colours(const BpScene *scene) {
+    bool have = false;
+    for (size_t i = 0; i < scene->triangle_count && scene->albedo_count > 0 && !have; ++i)
+        have = scene->triangles[i].albedo != BP_NO_ALBEDO;
+    return have;
 }
 
 static void pack_slot_block(void *context, uint32_t block, unsigned thread) {
@@ -533,19 +549,28 @@ static void pack_slot_block(void *context, uint32_t block, unsigned thread) {
         pack_slot_chunk(slots, chunk, end - chunk < SLOT_CHUNK ? end - chunk : SLOT_CHUNK);
 }
 
-/* What the sphere in each slot is made of. Empty slots are black. `threads`: 0, or how many may work. */
+/* What the shape in each slot is made of. Empty slots are black. `threads`: 0, or how many may work. */
 static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, unsigned threads, BpPacked *packed,
                            BpError *err) {
     BpStatus status = BP_OK;
     const size_t count = (size_t)packed->tree.leaf_count * packed->tree.width;
     packed->slot_material = bp_own_pages(count + 1, sizeof *packed->slot_material);
-    packed->slot_albedo = bp_own_pages(count + 1, ALBEDO_REALS * bp_packed_real_size(packed));
+    packed->coloured_slots =
+        triangles_have_colours(scene) ? (uint32_t)count : packed->tree.first_triangles * packed->tree.width;
+    const bool shared = packed->coloured_slots < count;
+    packed->colour_count = packed->coloured_slots + (uint64_t)(shared ? packed->material_count : 0);
+    packed->slot_albedo =
+        bp_own_pages((size_t)packed->colour_count + 1, ALBEDO_REALS * bp_packed_real_size(packed));
     Scattered *scattered = malloc((scene->material_count + 1) * sizeof *scattered);
     BpThreadPool *pool = bp_thread_pool_create(count < BP_BLOCK ? 1 : threads);
     if (packed->slot_material != NULL && packed->slot_albedo != NULL && scattered != NULL && pool != NULL) {
         for (size_t m = 0; m < scene->material_count; ++m) scattered[m] = scattered_by(&scene->materials[m]);
         Slots slots = {scene, second, scattered, packed, count};
         bp_parallel_for(pool, pack_slot_block, &slots, bp_block_count(count));
+        for (uint32_t m = 0; m < scene->material_count && shared; ++m) {
+            pack_material_colour(&slots, m, &scattered[m]);
+            if (second[m] != 0) pack_material_colour(&slots, second[m], &scattered[m]);
+        }
     } else {
         status = out_of_memory(scene, err);
     }

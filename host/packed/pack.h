@@ -31,6 +31,8 @@ typedef struct BpPacked {
     SCENE_ARRAYS_OF_SLOTS(BP_HOLD)
 #undef BP_HOLD
     uint32_t material_count; /* at least one */
+    uint32_t coloured_slots; /* the first so many slots have a colour each, in slot_albedo */
+    uint64_t colour_count;   /* these, and one for each material where there are other slots */
     uint32_t texture_count;
     uint64_t texel_count; /* of all images */
     uint32_t sky_row_count, sky_column_count, sky_height_count;

@@ -51,8 +51,10 @@ BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err) 
 #define NUMBER(name) worker->name,
     const cl_uint numbers[] = {SCENE_NUMBERS(NUMBER)};
 #undef NUMBER
-    if (worker->has_triangles)
+    if (worker->has_triangles) {
         BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &worker->first_triangles, err));
+        BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &worker->coloured_slots, err));
+    }
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i)
         BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &numbers[i], err));
     worker->scene_arguments = index;
@@ -137,6 +139,7 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, BpPacked *given, const BpWor
     made->seed_high = (uint32_t)(setup->seed >> 32);
     made->first_leaves = packed->tree.first_leaves;
     made->first_triangles = packed->tree.first_triangles;
+    made->coloured_slots = packed->coloured_slots;
     made->leaf_count = packed->tree.leaf_count;
     made->has_lamps = bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS);
     made->has_triangles = bp_effects_has(setup->program.effects, BP_EFFECT_TRIANGLES);

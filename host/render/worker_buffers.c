@@ -62,7 +62,8 @@ typedef struct Upload {
 static void list_uploads(const BpWorker *worker, const BpPacked *packed, Upload uploads[BP_SCENE_ARRAYS]) {
     const BpTree *tree = &packed->tree;
     const uint64_t width = tree->width, nodes = tree->node_count, leaf_count = tree->leaf_count;
-    const uint64_t slots = leaf_count * width, motion_leaves = tree->motion_leaves;
+    const uint64_t slots = leaf_count * width, colours = packed->colour_count,
+                   motion_leaves = tree->motion_leaves;
     const uint64_t triangle_leaves = tree->triangle_leaves;
     const uint64_t lamp_nodes = packed->lamps.node_count, lamp_slots = packed->lamps.slot_count;
     const uint64_t disc_count = packed->disc_count, texture_count = packed->texture_count;

@@ -65,10 +65,10 @@ typedef struct BpWorker {
     cl_mem sums, fine_sums, counts, tallies, samples;
     cl_mem lamp_rays; /* of each work-item of a chunk; used only if the scene `has_lamps` */
     bool has_lamps;
-    bool has_triangles; /* the kernel knows them, and is given their arrays and number */
+    bool has_triangles; /* the kernel knows them, and is given their arrays and numbers */
     cl_mem pixel_list;  /* NULL: chunks are ranges of pixels */
     size_t real_size;
-    uint32_t SCENE_NUMBERS(BP_SCENE_NUMBER_MEMBER) first_triangles, pixels;
+    uint32_t SCENE_NUMBERS(BP_SCENE_NUMBER_MEMBER) first_triangles, coloured_slots, pixels;
     BpKernelForm form;
     uint32_t samples_per_item; /* pixel samples of a work-item, on average in the pool form */
     size_t local_size;

@@ -13,7 +13,12 @@ static void fetch_surface(const Scene *scene, const Ray *ray, const Hit *hit, WI
     *sphere = sphere_for_ray(&scene->geometry, ray, slot);
 #endif
     const vuint material = gather_split_uint(scene->slot_material, 0, slot);
+#if EFFECT_TRIANGLES
+    const vuint colour = choose_uint(vbool_of_uint(slot < splat_uint(scene->coloured_slots)), slot,
+                                     scene->coloured_slots + material) * (uint)ALBEDO_REALS;
+#else
     const vuint colour = slot * (uint)ALBEDO_REALS;
+#endif
     const vuint numbers = material * MATERIAL_REALS;
     const vuint kinds = material * MATERIAL_UINTS;
     surface->albedo = vec3(gather_split_real(scene->slot_albedo, 0, colour), gather_split_real(scene->slot_albedo, 1u, colour),

@@ -9,25 +9,36 @@ typedef struct Scene {
     SCENE_ARRAYS_OF_FOCUSERS(ARRAY_MEMBER)
     SCENE_ARRAYS_OF_SLOTS(SPLIT_MEMBER)
     SCENE_ARRAYS_OF_LAMPS(SPLIT_MEMBER)
+#if EFFECT_TRIANGLES
+    uint coloured_slots;
+#endif
 } Scene;
+
+#if EFFECT_TRIANGLES
+#define COLOURS_PARAMETER uint coloured_slots,
+#define COLOURS_ARGUMENT coloured_slots,
+#else
+#define COLOURS_PARAMETER
+#define COLOURS_ARGUMENT
+#endif
 
 /* What every kernel that traces is told, each followed by a comma; scene_init and path_init_from_camera take it
  * apart. */
 #define NUMBER_PARAMETER(name) uint name,
 #define SCENE_PARAMETERS                                                                                               \
     SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_FOCUSERS(ARRAY_PARAMETER) SCENE_ARRAYS_OF_SLOTS(SPLIT_PARAMETER)                                       \
-    SCENE_ARRAYS_OF_LAMPS(SPLIT_PARAMETER) SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) TRIANGLES_PARAMETERS SCENE_NUMBERS(NUMBER_PARAMETER)
+    SCENE_ARRAYS_OF_LAMPS(SPLIT_PARAMETER) SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) TRIANGLES_PARAMETERS COLOURS_PARAMETER SCENE_NUMBERS(NUMBER_PARAMETER)
 #define NUMBER_ARGUMENT(name) name,
 /* All of them, for a function that takes the same. */
 #define SCENE_NAMES                                                                                                    \
     SCENE_ARRAYS_OF_PACK(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_FOCUSERS(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_SLOTS(SPLIT_ARGUMENT)                                         \
-    SCENE_ARRAYS_OF_LAMPS(SPLIT_ARGUMENT) SCENE_ARRAYS_OF_TREE(SPLIT_ARGUMENT) TRIANGLES_ARGUMENTS SCENE_NUMBERS(NUMBER_ARGUMENT)
+    SCENE_ARRAYS_OF_LAMPS(SPLIT_ARGUMENT) SCENE_ARRAYS_OF_TREE(SPLIT_ARGUMENT) TRIANGLES_ARGUMENTS COLOURS_ARGUMENT SCENE_NUMBERS(NUMBER_ARGUMENT)
 #define SCENE_ARGUMENTS                                                                                                \
     SCENE_ARRAYS_OF_PACK(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_FOCUSERS(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_SLOTS(SPLIT_ARGUMENT)                                         \
-    SCENE_ARRAYS_OF_LAMPS(SPLIT_ARGUMENT) SCENE_ARRAYS_OF_TREE(SPLIT_ARGUMENT) TRIANGLES_ARGUMENTS first_leaves, leaf_count, max_depth
+    SCENE_ARRAYS_OF_LAMPS(SPLIT_ARGUMENT) SCENE_ARRAYS_OF_TREE(SPLIT_ARGUMENT) TRIANGLES_ARGUMENTS COLOURS_ARGUMENT first_leaves, leaf_count, max_depth
 
 static Scene scene_init(SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_FOCUSERS(ARRAY_PARAMETER) SCENE_ARRAYS_OF_SLOTS(SPLIT_PARAMETER)
-                            SCENE_ARRAYS_OF_LAMPS(SPLIT_PARAMETER) SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) TRIANGLES_PARAMETERS uint first_leaves,
+                            SCENE_ARRAYS_OF_LAMPS(SPLIT_PARAMETER) SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) TRIANGLES_PARAMETERS COLOURS_PARAMETER uint first_leaves,
                         uint leaf_count, uint max_depth) {
     Scene scene;
     scene.max_depth = max_depth;
@@ -40,5 +51,8 @@ static Scene scene_init(SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_FO
     SCENE_ARRAYS_OF_LAMPS(SET_ARRAY)
     SCENE_ARRAYS_OF_SLOTS(SET_ARRAY)
 #undef SET_ARRAY
+#if EFFECT_TRIANGLES
+    scene.coloured_slots = coloured_slots;
+#endif
     return scene;
 }

@@ -281,6 +281,62 @@ static void camera_on_a_sphere(void **state) {
     }
 }
 
+/* Of a slot, as the kernel finds it. */
+static double colour_at(const BpPacked *packed, uint32_t slot, size_t channel) {
+    const uint32_t place =
+        slot < packed->coloured_slots ? slot : packed->coloured_slots + packed->slot_material[slot];
+    assert_true(place < packed->colour_count);
+    return bp_reals_load(packed->slot_albedo, packed->single_precision,
+                         ALBEDO_REALS * (size_t)place + channel);
+}
+
+/* A slot of triangles has a colour only where some triangle brings its own. */
+static void colours_of_triangles(void **state) {
+    (void)state;
+    BpScene scene = empty_scene();
+    BpMaterial materials[] = {
+        {.kind = BP_MATERIAL_LAMBERTIAN, .albedo = {.25, .5, .75}},
+        {.kind = BP_MATERIAL_DIELECTRIC, .refraction_index = 1.5},
+        {.kind = BP_MATERIAL_METAL, .albedo = {.5, .125, .875}},
+    };
+    float albedos[][3] = {{.0625f, .375f, 1}};
+    BpSphere sphere = {.center = {0, 0, -9}, .radius = 1, .material = 2, .albedo = 0};
+    BpTriangle triangles[40];
+    for (int i = 0; i < 40; ++i)
+        triangles[i] = (BpTriangle){.vertices = {{i, 0, -5}, {i + 1, 0, -5}, {i, 1, -5}},
+                                    .material = (uint32_t)i % 3,
+                                    .albedo = BP_NO_ALBEDO};
+    scene.materials = materials;
+    scene.material_count = 3;
+    scene.spheres = &sphere;
+    scene.sphere_count = 1;
+    scene.triangles = triangles;
+    scene.triangle_count = 40;
+    scene.albedos = albedos;
+    scene.albedo_count = 1;
+    const double expected[3][3] = {{.25, .5, .75}, {1, 1, 1}, {.5, .125, .875}};
+    for (int own = 0; own < 2; ++own) {
+        if (own) triangles[18].albedo = triangles[19].albedo = 0; /* of a matte one and of a glass one */
+        BpPacked packed;
+        pack(&scene, true, &packed);
+        const uint32_t slots = packed.tree.leaf_count * packed.tree.width;
+        assert_int_equal(packed.coloured_slots, own ? slots : 8);
+        assert_int_equal(packed.colour_count, own ? slots : 8 + packed.material_count);
+        unsigned seen = 0;
+        for (uint32_t s = 0; s < slots; ++s) {
+            const uint32_t shape = packed.tree.slot_sphere[s];
+            if (shape == NO_SPHERE) continue;
+            const bool coloured = shape == 0 || (own && shape == 19);
+            for (size_t a = 0; a < 3; ++a)
+                assert_true(colour_at(&packed, s, a) ==
+                            (coloured ? (double)albedos[0][a] : expected[(shape - 1) % 3][a]));
+            ++seen;
+        }
+        assert_int_equal(seen, 41);
+        bp_packed_clear(&packed);
+    }
+}
+
 static void nothing_at_all(void **state) {
     (void)state;
     const BpScene scene = empty_scene();
@@ -305,6 +361,7 @@ int main(void) {
         cmocka_unit_test(extreme_vup),
         cmocka_unit_test(materials_and_looks),
         cmocka_unit_test(camera_on_a_sphere),
+        cmocka_unit_test(colours_of_triangles),
         cmocka_unit_test(nothing_at_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

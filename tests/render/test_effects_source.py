@@ -47,7 +47,7 @@ MARKS = {
     "MEDIA": ["medium_around", "exp_minus", "interface_sample"],
     "CAUSTICS": [],  # FOCUSING
     "TRIANGLE_LAMPS": [],  # TOGETHER, SHINING
-    "TRIANGLES": ["triangle_decide", "load_triangle", "first_triangles"],
+    "TRIANGLES": ["triangle_decide", "load_triangle", "first_triangles", "coloured_slots"],
     "SHADOW_CATCHER": ["meets_catcher", "light_of_catcher", "lies_in_shadow"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
