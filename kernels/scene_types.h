@@ -297,7 +297,7 @@ typedef struct PackedVariation {
  * release (render/worker_buffers.c). Only what fills an array knows more of it.
  *
  * X(numbers, element, name, count, what): `numbers` is REALS or UINTS, what `element` is made of; `count`
- * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`,
+ * says how many elements there are, in terms of `width` (of the tree), `nodes`, `sphere_leaves`,
  * `motion_leaves`, `slots`, `material_count`, `texture_count`, `texel_count`, `sky_row_count` and so on,
  * `disc_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message calls it. Arrays of the first two
  * lists are pack.c's, of the third the tree of lamps', of the last the tree's.
@@ -352,7 +352,7 @@ typedef struct PackedVariation {
 #define SCENE_ARRAYS_OF_TREE(X)                                                                              \
     X(REALS, real, node_boxes, nodes * NODE_REALS(width), "the tree's boxes")                                \
     X(UINTS, packed_uint, children, nodes * width, "the tree's nodes")                                       \
-    X(REALS, real, leaves, leaf_count * LEAF_REALS(width), "the spheres")                                    \
+    X(REALS, real, leaves, sphere_leaves * LEAF_REALS(width), "the spheres")                                    \
     X(REALS, real, leaf_motions, motion_leaves * MOTION_REALS(width), "the spheres' motions")                 \
     X(UINTS, packed_uint, slot_sphere, slots, "the spheres' numbers")
 /* Of kernels that know triangles: after the others, and before the numbers, `first_triangles` and

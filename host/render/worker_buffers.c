@@ -64,7 +64,7 @@ static void list_uploads(const BpWorker *worker, const BpPacked *packed, Upload 
     const uint64_t width = tree->width, nodes = tree->node_count, leaf_count = tree->leaf_count;
     const uint64_t slots = leaf_count * width, colours = packed->colour_count,
                    motion_leaves = tree->motion_leaves;
-    const uint64_t triangle_leaves = tree->triangle_leaves;
+    const uint64_t triangle_leaves = tree->triangle_leaves, sphere_leaves = leaf_count - triangle_leaves;
     const uint64_t lamp_nodes = packed->lamps.node_count, lamp_slots = packed->lamps.slot_count;
     const uint64_t disc_count = packed->disc_count, texture_count = packed->texture_count;
     const uint64_t texel_count = packed->texel_count, sky_row_count = packed->sky_row_count;

@@ -149,6 +149,22 @@ class Meshes(ProgramTest):
         self.assertIn("each triangle has the mean of the colours of its vertices",
                       self.succeed("scene", self.scene("m.json", {"file": "vertices.off", "material": "clay"})).errors)
 
+    def test_bytes(self):
+        """A triangle takes few bytes on the device: its vertices, two numbers, boxes, empty lanes, and a colour where there are some."""
+        n, taken = 100, {}
+        corners = [(x / n, math.sin(7 * x / n) * math.cos(5 * z / n) / 9, z / n) for z in range(n + 1) for x in range(n + 1)]
+        squares = [z * (n + 1) + x for z in range(n) for x in range(n)]
+        faces = [half for a in squares for half in ((a, a + n + 1, a + 1), (a + 1, a + n + 1, a + n + 2))]
+        for name, listed in (("plain", faces), ("coloured", [(*face, 255, 0, 0) for face in faces])):
+            self.write("grid.off", off(corners, listed))
+            self.scene("s.json", {"file": "grid.off", "material": "clay"})
+            self.picture("s.json", "--width", 8, "--spp", 1, "--stats", f"{name}.json", "--force")
+            taken[name] = json.loads(self.read(f"{name}.json"))["scene_bytes"] / len(faces)
+        self.assertGreater(taken["plain"], 9 * 4 + 2 * 4)
+        self.assertLess(taken["plain"], 60, "vectors of eight lanes; with sixteen about 52")
+        self.assertGreater(taken["coloured"] - taken["plain"], 3 * 4)
+        self.assertLess(taken["coloured"] - taken["plain"], 3 * 4 / 0.8)
+
     def test_check_colors(self):
         """The reference has the same colours."""
         self.write("cube.off", off([(*corner, *(255 * part for part in corner), 255) for corner in CORNERS], CUBE))
