@@ -9,14 +9,19 @@
 #if SAMPLES_TRIANGLES
 #define TRIANGLE_DIVISOR_MIN R(0x1p-60)
 
+/* The solid angle over 2 pi. */
+static vreal triangle_cap(const TriangleView *view) {
+    const vreal turn = turn_of(view->sum, view->height);
+    return turn + turn;
+}
+
 /* Gives the cone of the lanes whose lamp is a triangle what that fills. */
 static void see_triangle(const Scene *scene, const Point *point, vuint slot, vbool asked, LampCone *cone) {
     const vbool flat = asked & is_triangle(&scene->geometry, slot);
     if (!any_lane(flat)) return;
     const Triangle triangle = load_triangle_if(&scene->geometry, flat, slot);
     const vbool seen = triangle_view(point, &triangle, &cone->view);
-    const vreal turn = turn_of(cone->view.base + cone->view.turn, cone->view.height);
-    cone->cap = choose(flat, turn + turn, cone->cap);
+    cone->cap = choose(flat, triangle_cap(&cone->view), cone->cap);
     cone->outside = (flat & seen) | (vbool_not(flat) & cone->outside);
 }
 

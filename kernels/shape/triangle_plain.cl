@@ -105,7 +105,7 @@ FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triang
 #define TRIANGLE_SEEN_MIN R(0x1p-100)
 typedef struct TriangleView {
     Vec3 a, b, c;
-    vreal height, turn, base;
+    vreal height, turn, base, sum;
 } TriangleView;
 
 static vbool triangle_view(const Point *point, const Triangle *triangle, TriangleView *view) {
@@ -120,8 +120,9 @@ static vbool triangle_view(const Point *point, const Triangle *triangle, Triangl
     view->height = divide(divide(divide(volume, to_a), to_b), to_c);
     view->turn = dot3(view->c, add3(view->a, view->b));
     view->base = splat(1) + dot3(view->a, view->b);
+    view->sum = view->base + view->turn;
     const vbool aslant = volume > TRIANGLE_FLAT * off, seen = view->height > splat(TRIANGLE_SEEN_MIN);
-    const vbool apart = view->height + fabs(view->turn + view->base) > splat(TRIANGLE_BESIDE);
+    const vbool apart = view->height + fabs(view->sum) > splat(TRIANGLE_BESIDE);
     return aslant & seen & apart;
 }
 #endif

@@ -371,11 +371,11 @@ FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triang
 #define TRIANGLE_BESIDE R(0x1p-16) /* below it nothing is left of the sum, so the point lies at an edge */
 #define TRIANGLE_SEEN_MIN R(0x1p-100)
 /* A triangle seen from a point: `a`, `b` and `c`, unit vectors to its vertices; `height`, |a.(b x c)|; `turn`, a.c + b.c; `base`,
- * 1 + a.b. The tangent of half its solid angle is height / (base + turn) (A. van Oosterom and J. Strackee, "The Solid
- * Angle of a Plane Triangle", 1983). */
+ * 1 + a.b; `sum`, of both, which may be far less than either. The tangent of half its solid angle is height / sum
+ * (A. van Oosterom and J. Strackee, "The Solid Angle of a Plane Triangle", 1983). */
 typedef struct TriangleView {
     Vec3 a, b, c;
-    vreal height, turn, base;
+    vreal height, turn, base, sum;
 } TriangleView;
 
 static WideVec way_from(const Point *point, Vec3 to) {
@@ -403,9 +403,9 @@ static vbool triangle_view(const Point *point, const Triangle *triangle, Triangl
     view->turn = wide_near(wide_multiply(around, inverse));
     view->base = wide_near(wide_add_real(ab, splat(1)));
     const vreal off = fma(wide_near(to_a), splat(TRIANGLE_FLAT), R(4.0) * point->error);
-    const vreal below = wide_near(wide_add_real(wide_add(ab, wide_multiply(around, inverse)), splat(1)));
+    view->sum = wide_near(wide_add_real(wide_add(ab, wide_multiply(around, inverse)), splat(1)));
     const vbool aslant = fabs(wide_near(volume)) > off * one_norm(normal), seen = view->height > splat(TRIANGLE_SEEN_MIN);
-    const vbool apart = fma(view->height, view->height, below * below) > splat(TRIANGLE_BESIDE * TRIANGLE_BESIDE);
+    const vbool apart = fma(view->height, view->height, view->sum * view->sum) > splat(TRIANGLE_BESIDE * TRIANGLE_BESIDE);
     return aslant & seen & apart;
 }
 #endif

@@ -328,3 +328,29 @@ __kernel void probe_turns(SCENE_PARAMETERS uint count, __global const real *rays
     row[15] = outward.z;
 #endif
 }
+
+#if SAMPLES_TRIANGLES
+/* A triangle from a point (high, low, and two numbers): whether it is sampled, its solid angle over 2 pi, a direction to it. */
+__kernel void probe_solid_angle(uint count, __global const real *points, __global const real *triangles,
+                                __global refined *out) {
+    PROBE_ITEM
+    __global const real *in = points + (size_t)item * 8, *v = triangles + (size_t)item * 9;
+    __global refined *row = out + (size_t)item * 5;
+    Point point;
+    point.high = vec3(in[0], in[1], in[2]);
+    point.low = vec3(in[3], in[4], in[5]);
+    point.error = 0;
+    Triangle triangle;
+    triangle.a = vec3(v[0], v[1], v[2]);
+    triangle.b = vec3(v[3], v[4], v[5]);
+    triangle.c = vec3(v[6], v[7], v[8]);
+    LampCone cone;
+    row[0] = triangle_view(&point, &triangle, &cone.view) != 0;
+    cone.cap = triangle_cap(&cone.view);
+    row[1] = cone.cap;
+    const Vec3 direction = sample_triangle(&cone, in[6], in[7]);
+    row[2] = direction.x;
+    row[3] = direction.y;
+    row[4] = direction.z;
+}
+#endif

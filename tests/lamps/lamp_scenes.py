@@ -299,7 +299,7 @@ def scatters(scene, name):
 
 
 def has_lamp(scene):
-    """Something emits that does not hold all other spheres, something matte or fuzzy or a medium is there to be
+    """Something emits that does not hold all others, something matte or fuzzy or a medium is there to be
     lit, and the sky is not as bright as every lamp, as far as the camera stands in no sphere that may hide it."""
     spheres = scene.get("spheres", [])
     used = [scene["materials"][each["material"]] for each in spheres]
@@ -312,11 +312,13 @@ def has_lamp(scene):
     around = background.get("image") if isinstance(background, dict) else None
     discs = background.get("discs", []) if isinstance(background, dict) else []
     discs = discs + [image for image in VARIED_SKIES if image == around]
-    lamps = [each for each in lamps if len(spheres) < 2 or not all(each is other or holds(each, other) for other in spheres)]
     flat = [scene["materials"][each["material"]] for member in ("triangles", "quads", "boxes") for each in scene.get(member, [])]
+    if not flat:
+        lamps = [each for each in lamps if len(spheres) < 2 or not all(each is other or holds(each, other) for other in spheres)]
+    lamps += [each for each in flat if sum(emission(scene, each)) > 0]
     lit = (any(each["type"] == "lambertian" or fuzzy(each.get("fuzz", 0)) for each in used + flat)
            or any(scatters(scene, name) for name in [scene.get("medium"), *(each.get("interior") for each in spheres)]))
-    return bool(lamps or discs) and lit and (bool(discs) or not outshone(scene, used))
+    return bool(lamps or discs) and lit and (bool(discs or flat) or not outshone(scene, used))
 
 
 def in_files(source):

@@ -913,9 +913,9 @@ MUTANTS = [
            [patch(KERNEL, "for (uint k = 0; k < count; ++k) {", "for (uint k = 1; k < count; ++k) {")], [lamp_case("1.2")]),
     # ---- triangles that emit ---------------------------------------------------------------------------------
     Mutant("half of the solid angle of a triangle", "classic: the arc tangent is that of half",
-           [patch(SHINING, "choose(flat, turn + turn, cone->cap)", "choose(flat, turn, cone->cap)")], [lamp_case("101.1")]),
+           [patch(SHINING, "return turn + turn;", "return turn;")], [lamp_case("101.1")]),
     Mutant("the solid angle without one of its terms", "classic: base and turn",
-           [patch(SHINING, "turn_of(cone->view.base + cone->view.turn, cone->view.height)", "turn_of(splat(1) + cone->view.turn, cone->view.height)")],
+           [patch(SHINING, "turn_of(view->sum, view->height)", "turn_of(view->turn, view->height)")],
            [lamp_case("101.8")]),
     Mutant("directions crowd at a corner", "classic: a triangle's place by a number without its root",
            [patch(SHINING, "along = square_root(v * divide(splat(2) - part, rest));", "along = v * square_root(divide(splat(2) - part, rest));")],
