@@ -9,8 +9,9 @@ enum {
     PILOT_POINT,                       /* where it ends, relative to the camera */
     PILOT_DIRECTION = PILOT_POINT + 3, /* unit */
     PILOT_DISTANCE = PILOT_DIRECTION + 3,
-    PILOT_THROUGHPUT,                  /* of the path, behind the vertex at its end */
-    PILOT_TIME = PILOT_THROUGHPUT + 3, /* of the path: 0 where the shutter opens, 1 where it closes */
+    PILOT_THROUGHPUT,                  /* of the path, behind the vertex at its end, times the odds */
+    PILOT_ODDS = PILOT_THROUGHPUT + 3, /* how much more often a picture's path would have come this way */
+    PILOT_TIME,                        /* of the path: 0 where the shutter opens, 1 where it closes */
     PILOT_REALS
 };
 /* And PILOT_UINTS whole numbers. PILOT_SHAPE: what it met, as the scene counts shapes, or NO_SPHERE. */

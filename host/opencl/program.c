@@ -226,6 +226,7 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
     }
     fprintf(out, "#define SAMPLER_SOBOL %d\n", options->sampler == BP_SAMPLER_SOBOL);
     fprintf(out, "#define PIXEL_LIST %d\n", options->pixel_list);
+    fprintf(out, "#define PILOT %d\n", options->pilot);
     for (int e = 0; e < BP_EFFECT_COUNT; ++e)
         fprintf(out, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
                 bp_effects_has(options->effects, (BpEffect)e));

@@ -52,6 +52,7 @@ typedef struct BpProgramOptions {
     BpKernelForm form;     /* not BP_KERNEL_AUTO */
     uint32_t tree_width;   /* 2, 4, 8 or 16 */
     uint32_t packet_lanes; /* 8 or 16; of the packet form alone */
+    bool pilot;            /* paths can choose as those of a pilot do */
     bool pixel_list;       /* chunks take their pixels from a list */
     uint32_t parts;        /* 2 to SCENE_PARTS_MAX: arrays that grow with the spheres come in so many parts */
     uint32_t part_length;  /* of so many elements each */

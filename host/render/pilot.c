@@ -145,7 +145,7 @@ BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, const BpPilotAim *
                                max_depth, &pilot.parts, err);
     if (status == BP_OK) {
         bp_pilot_pass(scene, bp_focusers_light_camera(&scene->camera), aim->lights, aim->light_count,
-                      pilot.rays, pilot.ray_count, 1.0 / pilot.plan.of_pixel, &pilot.parts);
+                      pilot.rays, pilot.ray_count, &pilot.parts);
         if (*caustics == BP_CAUSTICS_AUTO)
             *caustics = bp_pilot_focusing_pays(&pilot) ? BP_CAUSTICS_ON : BP_CAUSTICS_OFF;
         if (*caustics == BP_CAUSTICS_OFF)

@@ -57,14 +57,16 @@ static double brightness(const BpPilot *pilot, double *rims) {
                  pixels = squares * pilot->plan.side * pilot->plan.side;
     const double paths = squares * pilot->plan.of_pixel;
     const size_t stride = pilot->eye_count / EYES + 1;
-    double sum = 0, looked = 0, seen = 0;
+    double sum = 0, looked = 0, standing = 0, seen = 0;
     for (size_t i = 0; i < pilot->eye_count; i += stride, ++looked) {
         const BpPilotEye *eye = &pilot->eyes[i];
-        sum += sky * bp_luminance_of(eye->throughput);
+        const double odds = eye->share * pilot->plan.of_pixel;
+        standing += odds;
+        sum += odds * sky * bp_luminance_of(eye->throughput);
         for (size_t l = 0; l < aim->light_count; ++l) {
             double radiance[3];
             for (int c = 0; c < 3; ++c) radiance[c] = eye->throughput[c] * aim->lights[l].radiance[c];
-            sum += bp_luminance_of(radiance) * irradiance_over_pi(&aim->lights[l], eye);
+            sum += odds * bp_luminance_of(radiance) * irradiance_over_pi(&aim->lights[l], eye);
         }
     }
     *rims = 0;
@@ -73,8 +75,8 @@ static double brightness(const BpPilot *pilot, double *rims) {
         seen += y * part;
         *rims += y * y * fmin(part, RIM * sqrt(part / pixels));
     }
-    const double eyes = (double)pilot->eye_count / paths;
-    return (looked > 0 ? sum / looked : 0) * eyes + sky * (1 - eyes) + seen;
+    const double eyes = looked > 0 ? (double)pilot->eye_count / looked / paths : 0;
+    return sum * eyes + sky * fmax(0, 1 - standing * eyes) + seen;
 }
 
 bool bp_pilot_focusing_pays(const BpPilot *pilot) {

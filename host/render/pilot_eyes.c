@@ -26,20 +26,20 @@ double bp_pilot_pixel_extent(const BpCamera *camera) {
 
 BpPilotPlan bp_pilot_plan(const BpCamera *camera) {
     const uint64_t pixels = (uint64_t)camera->width * camera->height;
-    BpPilotPlan plan = {.side = 1, .of_pixel = 1};
+    BpPilotPlan plan = {.side = 1};
     while (pixels / ((uint64_t)plan.side * plan.side) > EYES) ++plan.side;
-    if (plan.side == 1) plan.of_pixel = (uint32_t)(EYES / pixels);
-    if (plan.of_pixel > EYES_OF_PIXEL) plan.of_pixel = EYES_OF_PIXEL;
     plan.width = (camera->width + plan.side - 1) / plan.side;
     plan.height = (camera->height + plan.side - 1) / plan.side;
+    const uint32_t of_square = EYES / (plan.width * plan.height);
+    plan.of_pixel = of_square < 1 ? 1 : of_square > EYES_OF_PIXEL ? EYES_OF_PIXEL : of_square;
     plan.extent = bp_pilot_pixel_extent(camera) * plan.side * plan.side / plan.of_pixel;
     return plan;
 }
 
-/* The pixel in the middle of a square. */
-static uint32_t pixel_of(const BpPilotPlan *plan, const BpCamera *camera, uint32_t square) {
-    uint32_t x = square % plan->width * plan->side + plan->side / 2;
-    uint32_t y = square / plan->width * plan->side + plan->side / 2;
+/* The pixel of one of a square's paths: the one in the middle, or several that lie apart. */
+static uint32_t pixel_of(const BpPilotPlan *plan, const BpCamera *camera, uint32_t square, uint32_t path) {
+    uint32_t x = square % plan->width * plan->side + (plan->side / 2 + path) % plan->side;
+    uint32_t y = square / plan->width * plan->side + (2 * path + 1) * plan->side / (2 * plan->of_pixel);
     if (x >= camera->width) x = camera->width - 1;
     if (y >= camera->height) y = camera->height - 1;
     return y * camera->width + x;
@@ -90,14 +90,15 @@ static void pass_directly(BpPilot *pilot, const BpPilotSegment *segment, size_t 
     }
 }
 
-static void keep_ray(BpPilot *pilot, const BpPilotSegment *segment, const double carried[3], uint32_t s,
-                     size_t square, uint32_t through, uint32_t vertices, uint64_t way) {
+static void keep_ray(BpPilot *pilot, const BpPilotSegment *segment, const double carried[3], double odds,
+                     uint32_t s, size_t square, uint32_t through, uint32_t vertices, uint64_t way) {
     const bool met = (segment->flags & PILOT_MET) != 0;
     if (s + 1 > pilot->max_depth || pilot->ray_count == pilot->ray_room) return;
     BpPilotRay *ray = &pilot->rays[pilot->ray_count];
     *ray = (BpPilotRay){.number = (uint32_t)pilot->ray_count++,
                         .length = met ? segment->distance : INFINITY,
                         .way = way,
+                        .share = odds / pilot->plan.of_pixel,
                         .pixel = (uint32_t)square,
                         .shape = segment->shape,
                         .through = through,
@@ -134,7 +135,7 @@ static void keep_eye(BpPilot *pilot, const BpPilotSegment *segment, uint32_t s, 
     const BpScene *scene = pilot->scene;
     BpPilotEye *eye = &pilot->eyes[pilot->eye_count];
     *eye = (BpPilotEye){.pixel = (uint32_t)square,
-                        .share = 1.0 / pilot->plan.of_pixel,
+                        .share = segment->odds / pilot->plan.of_pixel,
                         .shape = segment->shape,
                         .object = bp_pilot_object(scene, segment->shape),
                         .segments = s + 1};
@@ -160,9 +161,9 @@ static void follow_eye(BpPilot *pilot, const BpPilotFlight *flight, uint32_t pat
     BpPilotSegment segment, next;
     for (uint32_t s = 0; bp_pilot_segment(flight, path, SEGMENTS, s, &segment); ++s) {
         double carried[3];
-        bp_pilot_carried(flight, path, SEGMENTS, s, carried);
+        const double odds = bp_pilot_carried(flight, path, SEGMENTS, s, carried);
         if (through != NO_SPHERE)
-            keep_ray(pilot, &segment, carried, s, square, through, alone ? vertices : 0, way);
+            keep_ray(pilot, &segment, carried, odds, s, square, through, alone ? vertices : 0, way);
         else if (s == 0)
             pass_directly(pilot, &segment, square);
         if ((segment.flags & (PILOT_MET | PILOT_IN_MEDIUM)) != PILOT_MET) return;
@@ -190,7 +191,8 @@ BpStatus bp_pilot_trace_eyes(BpPilot *pilot, BpPilotFlight *flight, BpError *err
     for (uint32_t first = 0; first < total; first += flight->batch) {
         const uint32_t count = total - first < flight->batch ? total - first : flight->batch;
         for (uint32_t i = 0; i < count; ++i) {
-            flight->number_data[2 * i] = pixel_of(plan, &pilot->scene->camera, (first + i) / plan->of_pixel);
+            flight->number_data[2 * i] = pixel_of(plan, &pilot->scene->camera, (first + i) / plan->of_pixel,
+                                                  (first + i) % plan->of_pixel);
             flight->number_data[2 * i + 1] = (first + i) % plan->of_pixel;
         }
         BP_TRY(bp_pilot_fly(flight, count, SEGMENTS, true, err));

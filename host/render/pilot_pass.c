@@ -21,6 +21,9 @@
  */
 #define ASIDE2 0.16
 #define ASIDE2_OF_ONE 0.5
+/* The squared mean of n points of a disk of radius 1 is more than FEW / n in 3 of 100 cases: few rays that
+ * lie no farther off may be all around, and then the light counts. */
+#define FEW 1.75
 
 /* A ray that passes a light. */
 typedef struct Pass {
@@ -68,31 +71,33 @@ static void keep_nearest(const Pass *pass, size_t most, Pass *nearest, size_t *c
 
 /* The rays that have come one way, and one light. */
 static void pass_group(const BpScene *scene, const BpPilotLight *light, const BpPilotRay *rays, size_t count,
-                       double share, BpPilotSums *sums) {
+                       BpPilotSums *sums) {
     Pass nearest[COUNT], pass;
     size_t most = count / GROUP, found = 0;
     if (most > COUNT) most = COUNT;
     if (most < COUNT_MIN) most = COUNT_MIN;
     for (size_t i = 0; i < count; ++i)
         if (pass_light(light, &rays[i], &pass)) keep_nearest(&pass, most, nearest, &found);
-    if (found < most) return;
+    if (found < COUNT_MIN) return;
+    most = found; /* fewer, if others do not pass near */
     const double near2 = nearest[most - 1].off2;
     double aside[3] = {0};
     for (size_t i = 0; i < most - 1; ++i)
         for (int a = 0; a < 3; ++a) aside[a] += nearest[i].off[a] / (double)(most - 1);
-    if (bp_dot(aside, aside) > (ASIDE2 + ASIDE2_OF_ONE / (double)(most - 1)) * near2) return;
+    const double counted = (double)(most - 1);
+    if (bp_dot(aside, aside) > fmax(ASIDE2 + ASIDE2_OF_ONE / counted, FEW / counted) * near2) return;
     for (size_t i = 0; i < most - 1; ++i) { /* the last one tells how far, and does not count */
         const BpPilotRay *ray = nearest[i].ray;
         double radiance[3];
         if (nearest[i].size2 >= near2) return; /* rays meet it often */
         for (int c = 0; c < 3; ++c) radiance[c] = ray->carried[c] * light->radiance[c];
-        bp_pilot_add(sums, ray->pixel, radiance, share * nearest[i].size2 / near2,
+        bp_pilot_add(sums, ray->pixel, radiance, ray->share * nearest[i].size2 / near2,
                      bp_pilot_way(scene, ray->through));
     }
 }
 
 void bp_pilot_pass(const BpScene *scene, bool focused, const BpPilotLight *lights, size_t light_count,
-                   BpPilotRay *rays, size_t ray_count, double share, BpPilotParts *parts) {
+                   BpPilotRay *rays, size_t ray_count, BpPilotParts *parts) {
     qsort(rays, ray_count, sizeof *rays, by_way);
     for (size_t first = 0, end; first < ray_count; first = end) {
         for (end = first + 1; end < ray_count && rays[end].way == rays[first].way;) ++end;
@@ -101,7 +106,7 @@ void bp_pilot_pass(const BpScene *scene, bool focused, const BpPilotLight *light
             if (lights[l].share > 1) continue;
             const bool found = focused && ray->vertices > 0 &&
                                bp_pilot_is_sampled(scene, &lights[l], ray->through, ray->vertices);
-            pass_group(scene, &lights[l], ray, end - first, share, found ? &parts->focused : &parts->chance);
+            pass_group(scene, &lights[l], ray, end - first, found ? &parts->focused : &parts->chance);
         }
     }
 }

@@ -18,6 +18,7 @@
 typedef struct BpPilotRay {
     double origin[3], direction[3], length; /* infinite: it meets nothing */
     double carried[3];                      /* of a light that it meets, to the pixel */
+    double share;                           /* of the pixel's samples that it stands for */
     uint64_t way;                           /* the same for rays that have come the same way */
     uint32_t pixel, shape;                  /* that it meets, or NO_SPHERE */
     uint32_t through;                       /* the first that it has met */
@@ -25,9 +26,9 @@ typedef struct BpPilotRay {
     uint32_t number;                        /* none has another's */
 } BpPilotRay;
 
-/* `share`: of a pixel's samples that each ray stands for. `focused`: rays to lamps may go through focusers
+/* `focused`: rays to lamps may go through focusers
  * from the camera, too. Sorts the rays. */
 void bp_pilot_pass(const BpScene *scene, bool focused, const BpPilotLight *lights, size_t light_count,
-                   BpPilotRay *rays, size_t ray_count, double share, BpPilotParts *parts);
+                   BpPilotRay *rays, size_t ray_count, BpPilotParts *parts);
 
 #endif

@@ -123,10 +123,11 @@ bool bp_pilot_segment(const BpPilotFlight *flight, uint32_t path, uint32_t segme
     if ((segment->flags & PILOT_TRACED) == 0) return false;
     const bool single = flight->worker->real_size == sizeof(float);
 #define READ(i) bp_reals_load(flight->record_data, single, place *PILOT_REALS + (size_t)(i))
+    segment->odds = READ(PILOT_ODDS);
     for (int a = 0; a < 3; ++a) {
         segment->point[a] = READ(PILOT_POINT + a) + flight->origin[a];
         segment->direction[a] = READ(PILOT_DIRECTION + a);
-        segment->throughput[a] = READ(PILOT_THROUGHPUT + a);
+        segment->throughput[a] = segment->odds > 0 ? READ(PILOT_THROUGHPUT + a) / segment->odds : 0;
     }
     segment->distance = READ(PILOT_DISTANCE);
     segment->time = READ(PILOT_TIME);
@@ -153,10 +154,11 @@ bool bp_pilot_is_rough(const BpScene *scene, const BpPilotSegment *segment) {
     return bp_pilot_is_surface(scene, segment) && (segment->flags & PILOT_LIT) != 0;
 }
 
-void bp_pilot_carried(const BpPilotFlight *flight, uint32_t path, uint32_t segments, uint32_t s,
-                      double t[3]) {
+double bp_pilot_carried(const BpPilotFlight *flight, uint32_t path, uint32_t segments, uint32_t s,
+                        double t[3]) {
     BpPilotSegment before;
     t[0] = t[1] = t[2] = 1;
-    if (s > 0 && bp_pilot_segment(flight, path, segments, s - 1, &before))
-        memcpy(t, before.throughput, sizeof before.throughput);
+    if (s == 0 || !bp_pilot_segment(flight, path, segments, s - 1, &before)) return 1;
+    memcpy(t, before.throughput, sizeof before.throughput);
+    return before.odds;
 }

@@ -26,6 +26,7 @@ typedef struct BpPilotFlight {
 
 typedef struct BpPilotSegment {
     double point[3], direction[3], distance, throughput[3], time;
+    double odds; /* how much more often a picture's path would have come this way and left its end so */
     uint32_t shape, flags; /* as the scene counts shapes, or NO_SPHERE */
 } BpPilotSegment;
 
@@ -40,9 +41,9 @@ BpStatus bp_pilot_fly(BpPilotFlight *flight, cl_uint count, cl_uint segments, bo
 /* Of a path of the last batch, which had `segments`. False: the path has no such segment. */
 bool bp_pilot_segment(const BpPilotFlight *flight, uint32_t path, uint32_t segments, uint32_t s,
                       BpPilotSegment *segment);
-/* What the path carries into it. */
-void bp_pilot_carried(const BpPilotFlight *flight, uint32_t path, uint32_t segments, uint32_t s,
-                      double carried[3]);
+/* What the path carries into it; returns the odds of its coming this way. */
+double bp_pilot_carried(const BpPilotFlight *flight, uint32_t path, uint32_t segments, uint32_t s,
+                        double carried[3]);
 
 /* The unit normal of the shape that a segment has met, at its end, on the side that it came from. */
 void bp_pilot_normal(const BpScene *scene, const BpPilotSegment *segment, double normal[3]);

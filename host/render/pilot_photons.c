@@ -82,8 +82,8 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
         if (rough) {
             BpPilotPhoton *photon = &pilot->photons[pilot->photon_count++];
             double carried[3];
-            bp_pilot_carried(flight, path, BP_PILOT_SEGMENTS_MAX, s, carried);
-            *photon = (BpPilotPhoton){.measure = measure,
+            const double odds = bp_pilot_carried(flight, path, BP_PILOT_SEGMENTS_MAX, s, carried);
+            *photon = (BpPilotPhoton){.measure = measure * odds,
                                       .object = bp_pilot_object(scene, segment.shape),
                                       .segments = s + 1,
                                       .through = bp_pilot_way(scene, target),

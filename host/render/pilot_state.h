@@ -14,7 +14,7 @@
 #define BP_PILOT_PHOTONS 32768u /* paths from lights */
 #define BP_PILOT_DEPOSITS 3u    /* rough points on which the light of one path counts */
 
-/* Camera paths: `of_pixel` for each, or one for each square of side x side pixels. */
+/* Camera paths: `of_pixel` for each square of side x side pixels. */
 typedef struct BpPilotPlan {
     uint32_t width, height; /* of the grid of squares */
     uint32_t side, of_pixel;

@@ -62,6 +62,7 @@ static BpStatus open_worker(BpRender *render, const Opening *opening, size_t ind
     if (render->has_pilot && !render->pilot_done) {
         extra[extras++] = "pilot_types.h";
         extra[extras++] = "entry/pilot.cl";
+        setup.program.pilot = true;
     }
     if (extras > 0) {
         status = bp_kernel_texts(extra, extras, &appended, err);
@@ -143,7 +144,8 @@ static BpStatus create(const BpScene *scene, const BpRenderOptions *options, con
     bp_effects_analyse(scene, &made->effects);
     made->options.light_sampling = bp_render_light_sampling_of(&made->effects, options);
     made->options.caustics = bp_render_caustics_of(&made->effects, options);
-    if (made->options.light_sampling == BP_LIGHT_SAMPLING_ON && !options->samples_only) {
+    /* Where nothing is matte, no rays are sent to lights, and all of them are found by chance. */
+    if (options->light_sampling == BP_LIGHT_SAMPLING_ON && !options->samples_only) {
         BP_TRY_GOTO(status, bp_pilot_aim(scene, &made->aim, err), failed);
         made->has_pilot = bp_pilot_is_needed(scene, &made->aim);
         if (!made->has_pilot) bp_pilot_aim_clear(&made->aim);

@@ -28,6 +28,9 @@ typedef struct Surface {
     vreal lets_in;
 #endif
     vuint kind, lobe, variant, total_reflection;
+#if PILOT
+    uint evenly; /* 1: what is rare is drawn more often than in a picture, and weighs less */
+#endif
 } Surface;
 
 #if SAMPLES_LAMPS

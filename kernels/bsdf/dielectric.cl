@@ -22,7 +22,8 @@ static Vec3 along_surface(const Surface *surface, vreal c, vreal ratio) {
 }
 
 /* Chooses reflection with the probability of the reflectance, so the weight is the albedo, which is stored as 1. Where
- * the scene wants total reflection to absorb, it ends the path. */
+ * the scene wants total reflection to absorb, it ends the path. A pilot's path chooses halfway between that and an even
+ * chance, so the weight is how much more often a picture's path would choose the same. */
 static BsdfSample dielectric_sample(const Surface *surface, SampleKey key, vuint bounce) {
     /* index of the far side over the near side */
     const vreal n = choose(surface->enters, surface->refraction_index, divide(splat(1), surface->refraction_index));
@@ -44,7 +45,14 @@ static BsdfSample dielectric_sample(const Surface *surface, SampleKey key, vuint
     reflectance = choose(none, splat(0), reflectance);
     const vbool as_reflection = vbool_of_uint(surface->total_reflection == splat_uint(TOTAL_REFLECT));
     const vbool as_refraction = vbool_of_uint(surface->total_reflection == splat_uint(TOTAL_REFRACT));
-    const vbool by_chance = sample_1d(key, bounce + BOUNCE_CHOICE) < reflectance;
+    vreal odds_of_reflection = reflectance;
+#if PILOT
+    if (surface->evenly) {
+        const vbool both = (reflectance > splat(0)) & (reflectance < splat(1));
+        odds_of_reflection = choose(both, fma(R(0.5), reflectance, splat(R(0.25))), reflectance);
+    }
+#endif
+    const vbool by_chance = sample_1d(key, bounce + BOUNCE_CHOICE) < odds_of_reflection;
     const vbool reflects = (total & as_reflection) | (vbool_not(total) & by_chance);
     const vbool lost = total & vbool_not(as_reflection | as_refraction);
     const Vec3 mirrored = madd3(splat(2) * c, surface->normal, surface->incoming);
@@ -57,6 +65,13 @@ static BsdfSample dielectric_sample(const Surface *surface, SampleKey key, vuint
     BsdfSample sample = bsdf_sample_reflected(surface, choose3(matched, surface->incoming, direction));
     sample.scattered = vbool_not(lost) | matched;
     sample.transmitted = refracted;
+#if PILOT
+    if (surface->evenly) {
+        const vreal share = choose(by_chance, divide(reflectance, odds_of_reflection), divide(splat(1) - reflectance, splat(1) - odds_of_reflection));
+        const vbool sure = total | matched | vbool_of_uint(odds_of_reflection == reflectance);
+        sample.weight = choose3(sure, sample.weight, scale3(share, sample.weight));
+    }
+#endif
     return sample;
 }
 #endif

@@ -61,10 +61,11 @@ __kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segme
     } else {
         path_init_from_light(camera, key, starts, number, fresh, &path);
     }
+    path.evenly = 1;
     for (uint s = 0; s < segments; ++s) {
         const vbool moving = path.alive;
         if (!any_lane(moving)) break;
-        const Vec3 direction = path.direction;
+        const Vec3 origin = path.origin.high, direction = path.direction;
         trace_bounce(&scene, &path);
 #if SAMPLES_LAMPS
         path.wants_lamps = vbool_none;
@@ -72,10 +73,12 @@ __kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segme
         const vbool scattered = moving & path.latest.scattered;
         const vbool met = moving & path.latest.met;
         const vbool lit = stands_lit(&path, met | scattered);
+        /* What meets nothing has no other point; of paths that end, kernels keep none. */
+        const Vec3 point = choose3(met | scattered, path.origin.high, origin);
         const LaneReals values[PILOT_REALS] = {
-            [PILOT_POINT].all = path.origin.high.x,
-            [PILOT_POINT + 1].all = path.origin.high.y,
-            [PILOT_POINT + 2].all = path.origin.high.z,
+            [PILOT_POINT].all = point.x,
+            [PILOT_POINT + 1].all = point.y,
+            [PILOT_POINT + 2].all = point.z,
             [PILOT_DIRECTION].all = direction.x,
             [PILOT_DIRECTION + 1].all = direction.y,
             [PILOT_DIRECTION + 2].all = direction.z,
@@ -83,6 +86,7 @@ __kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segme
             [PILOT_THROUGHPUT].all = path.throughput.x,
             [PILOT_THROUGHPUT + 1].all = path.throughput.y,
             [PILOT_THROUGHPUT + 2].all = path.throughput.z,
+            [PILOT_ODDS].all = path.odds,
             [PILOT_TIME].all = path_time(&path)};
         LaneUints shapes, lanes;
         shapes.all = gather_split_uint(scene.geometry.slot_sphere, 0, choose_uint(met, path.own_slot, splat_uint(0)));

@@ -201,6 +201,9 @@ static void trace_chain(const Scene *scene, Path *path, const ChainChoice *choic
         if (any_lane(through & active)) {
             Surface clear = surface;
             clear.variant = splat_uint(FRESNEL_NONE);
+#if PILOT
+            clear.evenly = 0;
+#endif
             const BsdfSample bent = dielectric_sample(&clear, path->key, bounce);
             onward = choose3(through, bent.direction, onward);
             active = active & (bent.transmitted | vbool_not(through));

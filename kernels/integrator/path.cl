@@ -8,6 +8,7 @@ static void path_none(Path *path) {
     path->alive = path->inward = vbool_none;
     path->depth = splat_uint(0);
     path->radiance = zero3();
+    path_none_odds(path);
     path_none_media(path);
     path_none_lamps(path);
 }

@@ -1,4 +1,5 @@
-/* path_effects.cl: what motion, media and rays to lamps add to how a path begins and goes on; nothing in scenes without them.
+/* path_effects.cl: what motion, media, rays to lamps and a pilot's odds add to how a path begins and goes on; nothing in programs
+ * without them.
  *
  * In:    paths, and the lanes that it is about.   Out: the members of Path that only these effects have.
  * Knows: path_state.cl, camera.cl, phase.cl.   Does not know: what the paths meet. */
@@ -35,6 +36,25 @@ static void path_pass_media(vbool passed, Path *path) { path->unsure = path->uns
 static void path_init_chain(vbool fresh, Path *path) { path->chain = choose_uint(fresh, splat_uint(CHAIN_NONE), path->chain); }
 #else
 #define path_init_chain(fresh, path)
+#endif
+
+#if PILOT
+static void path_none_odds(Path *path) {
+    path->evenly = 0;
+    path->odds = splat(1);
+}
+
+static void surface_set_odds(const Path *path, Surface *surface) { surface->evenly = path->evenly; }
+
+/* Clear glass takes nothing away, so the odds are all that its weight is for. */
+static void path_keep_odds(Path *path, vbool met, const Surface *surface, const BsdfSample *bsdf_sample) {
+    const vbool by_odds = met & has_kind(surface, KIND_DIELECTRIC);
+    if (path->evenly) path->odds = choose(by_odds, path->odds * bsdf_sample->weight.x, path->odds);
+}
+#else
+#define path_none_odds(path)
+#define surface_set_odds(path, surface)
+#define path_keep_odds(path, met, surface, bsdf_sample)
 #endif
 
 #if WEIGHTED_LOBES

@@ -22,6 +22,10 @@ typedef struct Path {
     vbool inward;   /* it is left into its inside */
     vbool alive;
     Segment latest;
+#if PILOT
+    uint evenly; /* see Surface; all lanes */
+    vreal odds;  /* of paths that choose so: how much more often a picture's path would have come the same way */
+#endif
 #if EFFECT_MOTION
     vreal time;
 #endif

@@ -66,6 +66,9 @@ def media_cases(*names):
     return Script("tests/media/test_media.py", names, "9 media")
 
 
+rare_ways = Script("tests/unseen/test_unseen_program.py", ("Unseen.test_rare_ways",), "1 exact")
+
+
 def unseen_means(*names):
     """Tests of tests/unseen/test_unseen_means.py."""
     return Script("tests/unseen/test_unseen_means.py", tuple(f"Means.test_{name}" for name in names), "4 closed forms")
@@ -1403,8 +1406,31 @@ MUTANTS = [
            [test("test_pilot_join", "densities_are_those_of_what_is_drawn", "2 samplers")]),
     Mutant("a lamp for each path that passes", "this program: lights seen directly, without the number of paths",
            [patch("host/render/pilot_eyes.c", "chance / pilot->plan.of_pixel,", "chance,")], [unseen_means("small_lamps")]),
+    Mutant("rare ways drawn as rarely as in pictures", "this program: too few paths of what glass reflects inside",
+           [patch("kernels/bsdf/dielectric.cl", "fma(R(0.5), reflectance, splat(R(0.25)))", "reflectance")], [rare_ways]),
+    Mutant("rays of rare ways that count in full", "this program: lamps in glass, as probable as a pilot's choices",
+           [patch("host/render/pilot_eyes.c", ".share = odds / pilot->plan.of_pixel,", ".share = 1 / pilot->plan.of_pixel,")],
+           [unseen_means("lamps_in_a_window")]),
+    Mutant("ends of rare ways that count in full", "this program: floors under glass, as probable as a pilot's choices",
+           [patch("host/render/pilot_eyes.c", ".share = segment->odds / pilot->plan.of_pixel,", ".share = 1.0 / pilot->plan.of_pixel,")],
+           [unseen_means("glass_exact")]),
+    Mutant("light of rare ways that counts in full", "this program: light through glass, as probable as a pilot's choices",
+           [patch("host/render/pilot_photons.c", ".measure = measure * odds,", ".measure = measure,")], [unseen_means("glass_exact")]),
+    Mutant("dim light for rare light", "this program: odds that weaken what a find brings",
+           [patch("host/render/pilot_paths.c", "READ(PILOT_THROUGHPUT + a) / segment->odds", "READ(PILOT_THROUGHPUT + a)")],
+           [unseen_means("lamps_in_a_window")]),
+    Mutant("rays from nowhere", "this program: what a path keeps as it ends, where no rays are sent to lamps",
+           [patch("kernels/entry/pilot.cl", "choose3(met | scattered, path.origin.high, origin);", "path.origin.high;")],
+           [unseen_means("lamps_in_a_window")]),
+    Mutant("nothing is looked for without rays to lamps", "this program: glass and small lamps, and nothing matte",
+           [patch("host/render/render.c", "if (options->light_sampling == BP_LIGHT_SAMPLING_ON && !options->samples_only) {",
+                  "if (made->options.light_sampling == BP_LIGHT_SAMPLING_ON && !options->samples_only) {")],
+           [unseen_means("lamps_in_a_window")]),
+    Mutant("few rays on one side", "this program: a lamp inside of what few rays cover, taken for one beyond the rim",
+           [patch("host/render/pilot_pass.c", "fmax(ASIDE2 + ASIDE2_OF_ONE / counted, FEW / counted)", "(ASIDE2 + ASIDE2_OF_ONE / counted)")],
+           [rare_ways]),
     Mutant("suns beyond the rim of a mirror", "this program: rays that pass a light on one side",
-           [patch("host/render/pilot_pass.c", "if (bp_dot(aside, aside) > (ASIDE2 + ASIDE2_OF_ONE / (double)(most - 1)) * near2) return;", "")],
+           [patch("host/render/pilot_pass.c", "if (bp_dot(aside, aside) > fmax(ASIDE2 + ASIDE2_OF_ONE / counted, FEW / counted) * near2) return;", "")],
            [test("test_pilot_pass", "suns_in_a_flat_mirror", "4 closed forms")]),
     Mutant("half of the sun", "this program: a cap for the square of half its angle",
            [patch("host/render/pilot_pass.c", "pass->size2 = 2 * light->cap;", "pass->size2 = light->cap;")],

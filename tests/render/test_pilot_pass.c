@@ -37,6 +37,7 @@ static BpPilotRay *add_ray(Fixture *fixture) {
     BpPilotRay *ray = &fixture->rays[fixture->count];
     *ray = (BpPilotRay){.length = INFINITY,
                         .carried = {1, 1, 1},
+                        .share = 1,
                         .way = 77,
                         .pixel = (uint32_t)(fixture->count % PIXELS),
                         .shape = UINT32_MAX,
@@ -94,7 +95,7 @@ static void suns_in_a_mirror_ball(void **state) {
         const BpPilotLight light = sun(side * cos(turn), side * sin(turn), up, 0.27);
         Fixture *fixture = fixture_create();
         see_in_ball(fixture, 2, 100 + (uint64_t)s);
-        bp_pilot_pass(&spheres, false, &light, 1, fixture->rays, fixture->count, 1, &fixture->parts);
+        bp_pilot_pass(&spheres, false, &light, 1, fixture->rays, fixture->count, &fixture->parts);
         const double expected = light.cap / 2 * (double)fixture->count; /* W / (4 pi) of the rays */
         const double found = total(fixture->mean, PIXELS) / expected;
         if (!(found > 0.4 && found < 2.2)) fail_msg("sun %d: %g of what it should be", s, found);
@@ -118,7 +119,7 @@ static void lamps_in_a_mirror_ball(void **state) {
     Fixture *fixture = fixture_create();
     see_in_ball(fixture, 1, 31);
     const size_t count = fixture->count;
-    bp_pilot_pass(&spheres, false, &lamp, 1, fixture->rays, count, 0.5, &fixture->parts);
+    bp_pilot_pass(&spheres, false, &lamp, 1, fixture->rays, count, &fixture->parts);
     const double expected = 0.5 * radius * radius / (4 * away * away) * (double)count;
     const double found = total(fixture->mean, PIXELS) / (2 * expected);
     if (!(found > 0.4 && found < 2.2)) fail_msg("%g of what it should be", found);
@@ -136,7 +137,7 @@ static void lamps_in_a_mirror_ball(void **state) {
             fixture->rays[r].length = cases[i].length;
             fixture->rays[r].shape = cases[i].sphere;
         }
-        bp_pilot_pass(&spheres, false, &lamp, 1, fixture->rays, count, 1, &fixture->parts);
+        bp_pilot_pass(&spheres, false, &lamp, 1, fixture->rays, count, &fixture->parts);
         assert_int_equal(total(fixture->mean, PIXELS) > 0, cases[i].seen);
         free(fixture);
     }
@@ -145,7 +146,7 @@ static void lamps_in_a_mirror_ball(void **state) {
     fixture = fixture_create();
     see_in_ball(fixture, 1, 31);
     for (size_t r = 0; r < count; ++r) fixture->rays[r].length = 1e9;
-    bp_pilot_pass(&spheres, false, &light, 1, fixture->rays, count, 1, &fixture->parts);
+    bp_pilot_pass(&spheres, false, &light, 1, fixture->rays, count, &fixture->parts);
     assert_true(total(fixture->mean, PIXELS) <= 0);
     free(fixture);
 }
@@ -163,7 +164,7 @@ static void lights_behind_the_rays(void **state) {
         ray->direction[1] = 0.2 * (bp_random_next(&random) - 0.5);
         ray->direction[2] = 1;
     }
-    bp_pilot_pass(&spheres, false, &lamp, 1, fixture->rays, fixture->count, 1, &fixture->parts);
+    bp_pilot_pass(&spheres, false, &lamp, 1, fixture->rays, fixture->count, &fixture->parts);
     assert_true(total(fixture->mean, PIXELS) <= 0);
     free(fixture);
 }
@@ -191,7 +192,7 @@ static void suns_in_a_flat_mirror(void **state) {
                 ray->direction[2] = 1;
                 for (int a = 0; a < 3; ++a) ray->direction[a] /= sqrt(length2);
             }
-            bp_pilot_pass(&spheres, false, &light, 1, fixture->rays, fixture->count, 1, &fixture->parts);
+            bp_pilot_pass(&spheres, false, &light, 1, fixture->rays, fixture->count, &fixture->parts);
             found += total(fixture->mean, PIXELS) / (2 * PI * light.cap / (4 * half * half) * 2500) / 10;
             free(fixture);
         }
@@ -208,7 +209,7 @@ static void each_way_by_itself(void **state) {
     see_in_ball(one, 1, 51);
     see_in_ball(mixed, 1, 51);
     see_in_ball(few, 1, 51);
-    bp_pilot_pass(&spheres, false, &light, 1, one->rays, one->count, 1, &one->parts);
+    bp_pilot_pass(&spheres, false, &light, 1, one->rays, one->count, &one->parts);
     /* The same rays once more, in another order, with rays of another way among them that pass elsewhere. */
     const size_t count = mixed->count;
     for (size_t i = 0; i < count; ++i) {
@@ -222,19 +223,19 @@ static void each_way_by_itself(void **state) {
         mixed->rays[i] = mixed->rays[other];
         mixed->rays[other] = kept;
     }
-    bp_pilot_pass(&spheres, false, &light, 1, mixed->rays, mixed->count, 1, &mixed->parts);
+    bp_pilot_pass(&spheres, false, &light, 1, mixed->rays, mixed->count, &mixed->parts);
     assert_true(total(one->mean, PIXELS) > 0);
     assert_memory_equal(one->mean, mixed->mean, sizeof one->mean); /* bit for bit: they are sorted */
     /* A light that stands for others is no place that rays pass. */
     BpPilotLight shared = light;
     shared.share = 2;
-    bp_pilot_pass(&spheres, false, &shared, 1, few->rays, few->count, 1, &few->parts);
+    bp_pilot_pass(&spheres, false, &shared, 1, few->rays, few->count, &few->parts);
     assert_true(total(few->mean, PIXELS) <= 0);
-    bp_pilot_pass(&spheres, false, &light, 1, few->rays, 3, 1, &few->parts);
+    bp_pilot_pass(&spheres, false, &light, 1, few->rays, 3, &few->parts);
     assert_true(total(few->mean, PIXELS) <= 0);
     /* A light that rays meet often is seen by samples. */
     const BpPilotLight large = sun(0.3, 0.2, 1, 20);
-    bp_pilot_pass(&spheres, false, &large, 1, few->rays, few->count, 1, &few->parts);
+    bp_pilot_pass(&spheres, false, &large, 1, few->rays, few->count, &few->parts);
     assert_true(total(few->mean, PIXELS) <= 0);
     free(one);
     free(mixed);
