@@ -523,7 +523,7 @@ MUTANTS = [
                   "fresnel_schlick(choose(surface->enters, c, surface->refraction_index * c), ratio)")],
            [check("hollow-total-reflect", 512)]),
     Mutant("always refracts", "fourth, image 16: before Schlick",
-           [patch(KERNEL, "BOUNCE_CHOICE) < reflectance", "BOUNCE_CHOICE) < splat(0) * reflectance")],
+           [patch(KERNEL, "BOUNCE_CHOICE) < odds_of_reflection", "BOUNCE_CHOICE) < splat(0) * odds_of_reflection")],
            [check("glass-schlick", 64)]),
     Mutant("closest hit not kept", "classic: the last sphere wins",
            [patch(KERNEL, "found & vbool_of_refined(t < hit->t);", "found;"),
