@@ -116,13 +116,12 @@ static BsdfSample bsdf_sample_reflected(const Surface *surface, Vec3 direction) 
     return sample;
 }
 
-#if EFFECT_LAMBERTIAN || EFFECT_METAL || EFFECT_OREN_NAYAR
+/* Uniform over the unit sphere. */
 static Vec3 random_direction(SampleKey key, vuint bounce) {
     vreal u, v;
     sample_2d(key, bounce + BOUNCE_DIRECTION, &u, &v);
     return sample_sphere(u, v);
 }
-#endif
 
 #if EFFECT_LAMBERTIAN || EFFECT_METAL
 static vreal random_ball_radius(SampleKey key, vuint bounce) {

@@ -145,33 +145,36 @@ static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
 }
 
 #if WEIGHTED_LOBES
-/* What facets that reflect or refract leave, before a coat takes its part of it. */
-#if EFFECT_ROUGH_DIELECTRIC
-#define OR_GLASS(lobe) | is_rough_dielectric(lobe)
-static Vec3 facets_weight(const Lobe *lobe, Vec3 direction) {
-    const vbool glass = is_rough_dielectric(lobe);
-    const Vec3 weight = rough_metal_weight(lobe, direction);
-    if (!any_lane(glass)) return weight;
-    return choose3(glass, rough_dielectric_weight(lobe, direction), weight);
-}
-#else
-#define OR_GLASS(lobe)
-#define facets_weight rough_metal_weight
-#endif
-/* The lobes whose weight depends on the direction, and that weight. */
-#if EFFECT_GLOSSY
+#define has_lobe(lobe, wanted) vbool_of_uint((lobe)->kind == splat_uint(wanted))
+
+/* The lobes whose weight depends on the direction. */
 static vbool is_weighted(const Lobe *lobe) {
-    return vbool_of_uint(lobe->kind == splat_uint(LOBE_ROUGH_METAL)) | vbool_of_uint(lobe->kind == splat_uint(LOBE_GLOSSY_COAT)) OR_GLASS(lobe);
-}
-static Vec3 scatter_weight(const Lobe *lobe, Vec3 direction) {
-    const vbool coat = vbool_of_uint(lobe->kind == splat_uint(LOBE_GLOSSY_COAT));
-    const Vec3 weight = facets_weight(lobe, direction);
-    if (!any_lane(coat)) return weight;
-    return choose3(coat, scale3(coat_part(lobe->refraction_index, lobe->axis, lobe->outgoing, direction), weight), weight);
-}
-#else
-static vbool is_weighted(const Lobe *lobe) { return vbool_of_uint(lobe->kind == splat_uint(LOBE_ROUGH_METAL)) OR_GLASS(lobe); }
-static Vec3 scatter_weight(const Lobe *lobe, Vec3 direction) { return facets_weight(lobe, direction); }
+    vbool weighted = has_lobe(lobe, LOBE_ROUGH_METAL);
+#if EFFECT_GLOSSY
+    weighted = weighted | has_lobe(lobe, LOBE_GLOSSY_COAT);
 #endif
+#if EFFECT_ROUGH_DIELECTRIC
+    weighted = weighted | is_rough_dielectric(lobe);
+#endif
+    return weighted;
+}
+
+/* Their weight. A coat's is a part of what its facets leave. */
+static Vec3 scatter_weight(const Lobe *lobe, Vec3 direction) {
+    Vec3 weight = zero3();
+#if EFFECT_ROUGH_METAL || EFFECT_GLOSSY || EFFECT_ROUGH_DIELECTRIC
+    weight = rough_metal_weight(lobe, direction);
+#endif
+#if EFFECT_ROUGH_DIELECTRIC
+    const vbool glass = is_rough_dielectric(lobe);
+    if (any_lane(glass)) weight = choose3(glass, rough_dielectric_weight(lobe, direction), weight);
+#endif
+#if EFFECT_GLOSSY
+    const vbool coat = has_lobe(lobe, LOBE_GLOSSY_COAT);
+    if (any_lane(coat))
+        weight = choose3(coat, scale3(coat_part(lobe->refraction_index, lobe->axis, lobe->outgoing, direction), weight), weight);
+#endif
+    return weight;
+}
 #endif
 #endif
