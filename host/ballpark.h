@@ -1,6 +1,7 @@
-/* ballpark.h: the public interface of libballpark, a path tracer for spheres on any OpenCL device.
+/* ballpark.h: the public interface of libballpark, a path tracer for spheres and triangles on any OpenCL
+ * device.
  *
- * The straight line: load a scene, open a render of it on a list of devices, step until it is finished, read
+ * In short: load a scene, open a render of it on a list of devices, step until it is finished, read
  * the picture, destroy. After a call has failed, report it and destroy.
  *
  *     BpScene *scene = NULL; BpRender *render = NULL; BpError err = {0};
@@ -457,7 +458,7 @@ BP_API BpStatus bp_stop_create(BpRender *render, const BpStopRule *rule, BpStop 
 
 /* Call it after every bp_render_step(), with the progress that it returned. *reason: why to stop;
  * BP_STOP_NOT_YET: continue; the render has been given more samples if it had finished the earlier ones. The
- * error is looked at on fixed sample counts alone, so the same scene, seed and error end at the same count on
+ * error is checked only at fixed sample counts, so the same scene, seed and error end at the same count on
  * every run; time ends a render at a whole number of samples, unless it slowed down. */
 BP_API BpStatus bp_stop_check(BpStop *stop, const BpProgress *progress, BpStopReason *reason, BpError *err);
 

@@ -15,7 +15,7 @@
 static int copy_permissions(int descriptor, const struct stat *replaced) {
     struct stat own;
     mode_t mode = replaced->st_mode & 0777;
-    /* Only root can keep another owner; the group can be one of the user's own. It is no failure if either
+    /* Only root can keep another owner; the group can be one of the user's own. It is not a failure if either
      * cannot be kept. */
     if (fchown(descriptor, replaced->st_uid, replaced->st_gid) != 0)
         (void)!fchown(descriptor, (uid_t)-1, replaced->st_gid);

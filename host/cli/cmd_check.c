@@ -324,7 +324,7 @@ static BpStatus write_documents(Session *session, const json_t *against, BpError
     BpStatus status = BP_OK;
     if (line->junit != NULL)
         status = bp_junit_write(line, bp_check_junit(session->scenes, broken), line->junit, err);
-    session->junit_written = status != BP_ERR_MEMORY; /* else there is no use in another attempt */
+    session->junit_written = status != BP_ERR_MEMORY; /* else another attempt would fail too */
     if (line->json != NULL) { /* also when the other document failed: a check takes minutes */
         json_t *document = bp_check_document(json_incref(session->scenes), json_incref(broken),
                                              line->suite ? SUITE_NAME : NULL, SUITE_LEVEL);

@@ -326,7 +326,7 @@ static BpStatus start(BpComm *comm, const BpLaunch *launch, char *const *argumen
     if (comm->place.size != launch->size)
         return bp_fail(
             err, BP_ERR_USAGE,
-            "%s started %" PRIu32 " copies of this program, but its MPI knows of %" PRIu32
+            "%s started %" PRIu32 " copies of this program, but its MPI reports %" PRIu32
             ": it is not the launcher's MPI; use the launcher of the one that Ballpark was built "
             "with (with srun: --mpi=pmix, or what `srun --mpi=list` names), or set BALLPARK_MPI=off if each "
             "is "

@@ -218,7 +218,7 @@ static BpStatus read_unseen(BpFilmSource *source, BpFilm *film, BpError *err) {
     for (size_t i = 0; i < pixels; i++) {
         const BpUnseenPixel *pixel = &film->unseen->pixels[i];
         if (!(pixel->mean >= 0 && pixel->square >= 0 && isfinite(pixel->mean) && isfinite(pixel->square)))
-            return bp_fail(err, BP_ERR_FILE, "%s is damaged: the unseen light of pixel %zu is no radiance",
+            return bp_fail(err, BP_ERR_FILE, "%s is damaged: the unseen light of pixel %zu is not a radiance",
                            source->name, i);
     }
     for (int c = 0; c < 3; c++)

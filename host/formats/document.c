@@ -433,7 +433,7 @@ BpStatus bp_node_number(const BpNode *node, double *value, BpError *err) {
 
 BpStatus bp_node_integer(const BpNode *node, uint32_t low, uint32_t high, uint32_t *value, BpError *err) {
     if (node->value == NULL) return BP_OK;
-    const double number = json_number_value(node->value); /* 0 for what is no number */
+    const double number = json_number_value(node->value); /* 0 if it is not a number */
     if (json_is_number(node->value) && number == floor(number) && number >= low && number <= high) {
         *value = (uint32_t)number;
         return BP_OK;
@@ -470,7 +470,7 @@ BpStatus bp_node_string(const BpNode *node, const char **value, BpError *err) {
 BpStatus bp_node_choice(const BpNode *node, const char *const *names, size_t name_count, int *value,
                         BpError *err) {
     if (node->value == NULL) return BP_OK;
-    const char *text = json_string_value(node->value); /* NULL for what is no string */
+    const char *text = json_string_value(node->value); /* NULL if it is not a string */
     char expected[256] = "";
     for (size_t i = 0; i < name_count; i++) {
         if (text != NULL && strcmp(text, names[i]) == 0) {

@@ -13,7 +13,7 @@ typedef struct Place {
     const char *text;
     size_t length, at;
     char word[WORD_SIZE]; /* what stands there: letters, digits, signs and points */
-    char before;          /* the last character before it that is no space; '\0' at the beginning */
+    char before;          /* the last character before it that is not a space; '\0' at the beginning */
 } Place;
 
 static char char_at(const Place *place, size_t at) {

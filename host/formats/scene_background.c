@@ -150,7 +150,7 @@ BpStatus bp_parse_shadow_catcher(const BpNode *node, BpScene *scene, BpError *er
     if (catcher->present && scene->environment != NULL)
         return bp_node_fail(node, BP_PART_NAME, err,
                             "found beside an image as background, expected colours and discs, whose light a "
-                            "shadow catcher knows; remove one");
+                            "shadow catcher takes into account; remove one");
     return BP_OK;
 }
 

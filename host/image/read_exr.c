@@ -91,7 +91,7 @@ static BpStatus check_b44(const ExrReader *reader, const exr_chunk_info_t *chunk
                          "different ways, expected another compression, such as ZIP; convert it");
 }
 
-/* The layer's windows, and that it is no cube. */
+/* Checks the layer's windows, and that it is not a cube map. */
 static BpStatus read_header(ExrReader *reader, exr_storage_t *storage, BpError *err) {
     const int part = reader->layer.part;
     exr_attr_box2i_t *const windows[] = {&reader->window, &reader->display};

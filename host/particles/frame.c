@@ -285,7 +285,7 @@ void frame_cell(BpParticleFile *file, const double origin[3], const double edges
     BpParticles *const p = file->out;
     if (p == NULL) return;
     double longest = 0;
-    bool good = true; /* fmax() would pass over what is no number */
+    bool good = true; /* fmax() ignores NaN */
     for (int i = 0; i < 3; i++) {
         const double length = bp_length(edges[i]);
         good &= length <= COORDINATE_MAX && fabs(origin[i]) <= COORDINATE_MAX;

@@ -230,7 +230,7 @@ static BpStatus next_row(Input *input, char **line, char *remark, BpError *err) 
     }
 }
 
-/* The separator that a line such as "sep=;" tells spreadsheets; 0: it is no such line. */
+/* The separator that a line such as "sep=;" declares to spreadsheets; 0: the line is another. */
 static char separator_line(const char *line) {
     line += *line == '"';
     return strncasecmp(line, "sep=", 4) == 0 ? line[4] : '\0';

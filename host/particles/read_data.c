@@ -249,7 +249,7 @@ static BpStatus take_mass(const Input *input, Data *data, char **words, size_t c
     return BP_OK;
 }
 
-/* Elements for all atoms or for none: a mass that is no element's belongs to a model of beads, whose other
+/* Elements for all atoms or for none: a mass that no element has belongs to a model of beads, whose other
  * masses mean nothing either. */
 static void set_elements(BpParticleFile *file, const Data *data) {
     BpParticles *const p = file->out;

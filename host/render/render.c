@@ -560,7 +560,7 @@ static BpStatus fill_aovs(BpRender *render, BpError *err) {
 
 BpStatus bp_render_read_whole_film(BpRender *render, const BpFilm **film, BpError *err) {
     BP_TRY(bp_render_read_film(render, film, err));
-    if (!bp_comm_is_root(render->comm)) return BP_OK; /* whose film is no use */
+    if (!bp_comm_is_root(render->comm)) return BP_OK; /* the others' films are not complete */
     BP_TRY(add_plan(render, render->film, err));
     if (!render->options.features) return BP_OK;
     BP_TRY(fill_aovs(render, err));

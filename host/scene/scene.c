@@ -237,11 +237,6 @@ const char *bp_triangle_name(const BpScene *scene, size_t triangle, char text[BP
     return text;
 }
 
-const char *bp_shape_name(const BpScene *scene, size_t shape, char text[BP_SPHERE_NAME_SIZE]) {
-    return shape < scene->sphere_count ? bp_sphere_name(scene, shape, text)
-                                       : bp_triangle_name(scene, shape - scene->sphere_count, text);
-}
-
 size_t bp_scene_emitting_triangles(const BpScene *scene) {
     size_t count = 0;
     for (size_t t = 0; t < scene->triangle_count; t++) {

@@ -270,7 +270,6 @@ static inline uint32_t bp_shape_albedo(const BpScene *scene, size_t shape) {
     return shape < scene->sphere_count ? scene->spheres[shape].albedo
                                        : scene->triangles[shape - scene->sphere_count].albedo;
 }
-const char *bp_shape_name(const BpScene *scene, size_t shape, char text[BP_SPHERE_NAME_SIZE]);
 /* "sphere", "triangle", or "shape" where there are both. */
 const char *bp_scene_noun(const BpScene *scene);
 

@@ -328,7 +328,7 @@ class Ranks(cli.ProgramTest):
         """A launcher of another MPI starts copies that do not know of each other."""
         done = self.run_program("render", "s.json", environment={"PMI_SIZE": "4", "PMI_RANK": "0"})
         self.assertEqual(done.returncode, 2, done.errors)
-        self.assertIn("mpiexec started 4 copies of this program, but its MPI knows of 1", done.errors)
+        self.assertIn("mpiexec started 4 copies of this program, but its MPI reports 1", done.errors)
 
     def test_different_arguments(self):
         script = 'exec "$0" render s.json --spp 1 -o $OMPI_COMM_WORLD_RANK.png -q'

@@ -290,7 +290,7 @@ static void test_beginnings_that_fail(void **state) {
     be_rank(0);
     setenv("FAKE_SIZE", "1", 1);
     assert_int_equal(bp_comm_begin(arguments, &comm, &err), BP_ERR_USAGE);
-    assert_non_null(strstr(err.message, "started 3 copies of this program, but its MPI knows of 1"));
+    assert_non_null(strstr(err.message, "started 3 copies of this program, but its MPI reports 1"));
     unsetenv("FAKE_SIZE");
     setenv("BALLPARK_MPI", "/nowhere/ballpark_mpi.so", 1);
     assert_int_equal(bp_comm_begin(arguments, &comm, &err), BP_ERR_USAGE);

@@ -244,9 +244,9 @@ static void wrong_numbers_are_refused(void **state) {
         BpUnseenPixel *unseen = &film->unseen->pixels[8];
         const BpUnseenPixel kept = *unseen;
         unseen->mean = bad[i];
-        refuse_film(&files, film, "the unseen light of pixel 8 is no radiance");
+        refuse_film(&files, film, "the unseen light of pixel 8 is not a radiance");
         *unseen = (BpUnseenPixel){kept.mean, bad[i]};
-        refuse_film(&files, film, "the unseen light of pixel 8 is no radiance");
+        refuse_film(&files, film, "the unseen light of pixel 8 is not a radiance");
         *unseen = kept;
         film->unseen->tint[1] = bad[i];
         refuse_film(&files, film, "the colour of the unseen light is none");

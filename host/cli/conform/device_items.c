@@ -142,7 +142,7 @@ BpStatus bp_device_items_run(const BpDeviceItems *items, BpItemOutcome *outcomes
                            &report, err));
     if (report.end != BP_CHILD_DONE && bp_terminal_is_live(items->quiet)) bp_terminal_show("");
     read_lines(items, report.bytes, outcomes, doing);
-    /* A child that a second signal ended is no broken device. */
+    /* A child that a second signal has ended does not show that its device is broken. */
     fill_gaps(items, &report, bp_interrupted(), doing, outcomes);
     free(report.bytes);
     if (bp_json_memory_failed()) { /* what was read may lack something */

@@ -42,7 +42,7 @@ static BpStatus check_free(const BpCheckpoint *checkpoint, BpError *err) {
                        "--checkpoint would replace %.400s, an unfinished render: continue it with --resume "
                        "%.400s, or remove it",
                        checkpoint->path, checkpoint->path);
-    if (checkpoint->is_result) return BP_OK; /* a result is replaced, as ever */
+    if (checkpoint->is_result) return BP_OK; /* a result is replaced, as results are without checkpoints */
     return bp_fail(
         err, BP_ERR_USAGE,
         "--checkpoint would replace %.400s, which already exists beside the picture: move it, or choose "

@@ -27,7 +27,7 @@ static bool append_word(char *text, size_t size, const char *word) {
     return true;
 }
 
-/* A name that begins with a dash is no option. */
+/* A name that begins with a dash must not be taken for an option. */
 static bool append_operand(char *text, size_t size, const char *operand) {
     char value[4200];
     const bool dashed = operand[0] == '-' && operand[1] != '\0';
