@@ -4,8 +4,8 @@
     mitsuba_peer.py SCENE.json [--width N] [--spp N] [--passes N] [--seed N] [--depth N] [--output FILE.pfm]
     mitsuba_peer.py --why            exit code 0 if Mitsuba runs here; else 77, and the reason
 
-In:    a scene of what both know: matte, mirror, glass with exact Fresnel, lamps, one colour of sky, a camera without lens.
-       bench/common_scene.py makes such a scene of any other.
+In:    a scene of what both know: spheres, triangles and meshes; matte, mirror, glass with exact Fresnel, lamps, one colour of
+       sky, a camera without lens. bench/common_scene.py makes such a scene of any other, `ballpark scene` triangles of quads and boxes.
 Out:   one object of JSON, as the other peers print it: seconds and processor seconds of each pass (after a first one that
        compiles and does not count), mean radiance and its standard error, and the squared error of a pass relative to
        the picture; with --output the mean picture.
@@ -20,6 +20,7 @@ import pathlib
 import re
 import struct
 import sys
+import tempfile
 import time
 
 VARIANT = "llvm_ad_rgb"
@@ -86,6 +87,35 @@ def points(path):
         yield (*values[:3], values[number] if number is not None else 0)
 
 
+def placement(mesh, mi):
+    """Scaled, turned about x, y and z, moved."""
+    scale = mesh.get("scale", 1)
+    placed = mi.ScalarTransform4f().translate(mesh.get("translate", [0, 0, 0]))
+    for axis, degrees in reversed(list(enumerate(mesh.get("rotate", [0, 0, 0])))):
+        placed = placed.rotate([float(k == axis) for k in range(3)], degrees)
+    return placed.scale([scale] * 3 if isinstance(scale, (int, float)) else scale)
+
+
+def flat_shapes(document, path, folder, mi):
+    """(material, shape without it) of what consists of triangles: those of each material become a file."""
+    by_material = {}
+    for each in document.get("triangles", []):
+        by_material.setdefault(each["material"], []).append(each["vertices"])
+    for number, (name, triangles) in enumerate(by_material.items()):
+        rows = [" ".join(map(str, vertex)) for triangle in triangles for vertex in triangle]
+        rows += [f"3 {3 * k} {3 * k + 1} {3 * k + 2}" for k in range(len(triangles))]
+        head = ["ply", "format ascii 1.0", f"element vertex {3 * len(triangles)}", *(f"property double {axis}" for axis in "xyz"),
+                f"element face {len(triangles)}", "property list uchar int vertex_indices", "end_header"]
+        file = pathlib.Path(folder, f"{number}.ply")
+        file.write_text("\n".join(head + rows) + "\n")
+        yield name, {"type": "ply", "filename": str(file), "face_normals": True}
+    for mesh in document.get("meshes", []):
+        file = path.parent / mesh["file"]
+        if "materials" in mesh or file.suffix not in (".ply", ".obj"):
+            raise Unable(f"{file}: neither PLY nor OBJ, or of several materials")
+        yield mesh["material"], {"type": file.suffix[1:], "filename": str(file), "face_normals": True, "to_world": placement(mesh, mi)}
+
+
 def build(path, options, mi):
     document = json.loads(path.read_text())
     camera = document["camera"]
@@ -116,14 +146,17 @@ def build(path, options, mi):
     materials = {name: material(each, mi) for name, each in document["materials"].items()}
     count = 0
 
-    def put(center, radius, name):
+    def put_shape(shape, name):
         nonlocal count
         bsdf, emit = materials[name]
-        shape = {"type": "sphere", "center": list(center), "radius": abs(radius), "bsdf": bsdf}
+        shape["bsdf"] = bsdf
         if emit is not None:
             shape["emitter"] = {"type": "area", "radiance": {"type": "rgb", "value": emit}}
-        scene[f"sphere{count}"] = shape
+        scene[f"shape{count}"] = shape
         count += 1
+
+    def put(center, radius, name):
+        put_shape({"type": "sphere", "center": list(center), "radius": abs(radius)}, name)
 
     for each in document.get("spheres", []):
         put(each["center"], each["radius"], each["material"])
@@ -131,7 +164,10 @@ def build(path, options, mi):
         names = cloud.get("materials") or [cloud["material"]]
         for x, y, z, number in points(path.parent / cloud["file"]):
             put((x, y, z), cloud["radius"], names[number])
-    return mi.load_dict(scene), width, height
+    with tempfile.TemporaryDirectory() as folder:
+        for name, shape in flat_shapes(document, path, folder, mi):
+            put_shape(shape, name)
+        return mi.load_dict(scene), width, height
 
 
 def measure(options):
@@ -185,7 +221,6 @@ def main():
     options = parser.parse_args()
     try:
         if options.why:
-            import tempfile
             with tempfile.TemporaryDirectory() as folder:
                 path = pathlib.Path(folder, "try.json")
                 path.write_text(json.dumps({"camera": {"image_width": 4, "aspect_ratio": 1}, "background": [1, 1, 1],

@@ -4,6 +4,8 @@
 
 Its Python is BUILD_DIR/../mitsuba/bin/python, where bench/mitsuba_setup puts it, or what MITSUBA_PYTHON names.
 """
+import importlib.machinery
+import importlib.util
 import json
 import math
 import os
@@ -54,6 +56,12 @@ with tempfile.TemporaryDirectory() as folder:
             material.pop("scatter", None)
         (folder / f"{name}.json").write_text(json.dumps(scene))
         paths.append(folder / f"{name}.json")
+    loader = importlib.machinery.SourceFileLoader("mesh_peers", str(source / "bench/mesh_peers"))
+    mesh_peers = importlib.util.module_from_spec(importlib.util.spec_from_loader("mesh_peers", loader))
+    loader.exec_module(mesh_peers)
+    for name, document in mesh_peers.scenes().items():
+        (folder / name).mkdir()
+        paths.append(mesh_peers.common(program, document, folder / name))
     for path in paths:
         done = subprocess.run([*peer, str(path), "--width", str(WIDTH), "--spp", str(SAMPLES), "--passes", str(PASSES), "--seed", "7"],
                               check=True, capture_output=True, text=True)
@@ -64,5 +72,5 @@ with tempfile.TemporaryDirectory() as folder:
             a, b = [m[c] for m in mine], [m[c] for m in theirs]
             error = math.sqrt((statistics.variance(a) + statistics.variance(b)) / PASSES)
             ts.append((statistics.fmean(a) - statistics.fmean(b)) / error)
-        print(f"{path.stem:12} t {' '.join(f'{t:5.1f}' for t in ts)}  error of the comparison {error / statistics.fmean(b):.2%}")
+        print(f"{path.parent.name if path.stem == 'scene' else path.stem:16} t {' '.join(f'{t:5.1f}' for t in ts)}  error of the comparison {error / statistics.fmean(b):.2%}")
         assert max(map(abs, ts)) < T_MAX, (path.stem, ts)
