@@ -68,6 +68,8 @@ static void print_lamp_ray(const BpScene *scene, const BpPathStep *step, FILE *o
     if (!step->to_lamp) return;
     if (step->to_image)
         fputs("       a ray to the image around", out);
+    else if (!step->to_disc && step->lamp >= scene->sphere_count)
+        fprintf(out, "       a ray to %s", shape_name(scene, step->lamp, name));
     else
         fprintf(out, "       a ray to %s %" PRIu32, step->to_disc ? "disc" : "lamp", step->lamp);
     if (!step->stopped)

@@ -190,6 +190,11 @@ class Triangles(unittest.TestCase):
         for text in says:
             self.assertIn(text, said)
 
+    def test_rays_to_triangles_are_named(self):
+        lamp = {"corner": [-1, 3, 1], "u": [2, 0, 0], "v": [0, 0, -2], "material": "lamp"}
+        told = self.run_ballpark(scene(quads=[FLOOR, lamp]), "explain", "--pixel", "16,17", "--wide").stdout
+        self.assertRegex(told, r"a ray to quads\[1\] brings \(")
+
     def test_where_light_may_be_left_to_chance(self):
         """A pilot looks for it there, and nowhere else."""
         ball = {"center": [0.3, 0.4, 1.6], "radius": 0.4, "material": "glass"}
