@@ -22,6 +22,11 @@
 /* Whether the scene has light that a pilot may find, in what bp_pilot_aim() has found. */
 bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim);
 
+/* Whether narrow lobes of metal, rough glass or coats may send light of a light that is smaller than they are
+ * to matte points. A ray to the light is sent from there, so a pilot does not follow such paths, but samples
+ * find that light seldom. */
+bool bp_pilot_is_blind(const BpScene *scene, const BpPilotAim *aim);
+
 /* *caustics: whether rays to lamps go through focusers too; of BP_CAUSTICS_AUTO it makes one of the others.
  * *unseen is NULL if there is none. */
 BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, const BpPilotAim *aim, uint32_t max_depth,
