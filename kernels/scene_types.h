@@ -244,7 +244,7 @@ typedef struct PackedVariation {
 #define ALBEDO_REALS 3
 /* Leaves from `first_triangles` on are triangles instead, in an array of their own: width reals each of x, y
  * and z of the first vertex, then of the second and the third. They run counter-clockwise seen from outside.
- * In an empty lane all three are one point, which no ray meets. The index of a triangle in `slot_sphere` is
+ * In an empty lane all three are NaN, which no ray meets. The index of a triangle in `slot_sphere` is
  * the number of spheres and its own number among the triangles. */
 #define TRIANGLE_REALS(width) (9 * (width))
 /* How far a leaf's spheres move while the shutter is open: width reals each of x, y, z; -0 where they do not,

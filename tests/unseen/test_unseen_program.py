@@ -67,6 +67,8 @@ class Unseen(cli.ProgramTest):
                 "materials": {"floor": matte, "ball": material, "lamp": {"type": "diffuse_light", "emit": [50, 50, 50]}}}))
             said = " ".join(self.succeed("render", "lobes.json", "--spp", 2, "-o", "a.pfm").stderr.decode().split())
             self.assertEqual("light of small lamps that rough metal, rough glass or coats throw" in said, told, (material, radius))
+            said = " ".join(self.succeed("explain", "lobes.json").stdout.decode().split())
+            self.assertEqual("narrow lobes yes light of small lamps that rough metal" in said, told, (material, radius))
             os.remove(self.path("a.pfm"))
 
     def test_resumes_and_merges(self):
