@@ -235,8 +235,8 @@ static inline void effects_spheres(EffectsScene *made, bool tree) {
 }
 
 /* A folded wall of two triangles that share an edge and lie partly behind spheres, and two that cross each
- * other. */
-/* The last one emits where one does. */
+ * other. The last one emits where one does, by a material without textures: those of other lamps lie around
+ * spheres. */
 static inline void effects_triangles(EffectsScene *made, uint32_t bits) {
     static const double at[4][3][3] = {{{-4, -0.5, -6}, {0.5, -0.5, -5}, {0.5, 3, -5}},
                                        {{-4, -0.5, -6}, {0.5, 3, -5}, {-4, 3, -6}},
@@ -248,9 +248,10 @@ static inline void effects_triangles(EffectsScene *made, uint32_t bits) {
         memcpy(made->triangles[i].vertices, at[i], sizeof at[i]);
         made->triangles[i].albedo = BP_NO_ALBEDO;
     }
-    for (uint32_t m = 0; bp_effects_has(bits, BP_EFFECT_TRIANGLE_LAMPS) && m < made->scene.material_count;
-         ++m)
-        if (made->materials[m].emit[0] > 1) made->triangles[3].material = m;
+    if (!bp_effects_has(bits, BP_EFFECT_TRIANGLE_LAMPS)) return;
+    made->triangles[3].material = (uint32_t)made->scene.material_count;
+    BpMaterial *lamp = effects_material(made, BP_MATERIAL_DIFFUSE_LIGHT, 0, 0, 0);
+    lamp->emit[0] = 4, lamp->emit[1] = 3, lamp->emit[2] = 0.5;
 }
 
 /* Media in most of what light passes through, and around all in every fifth set. */

@@ -111,6 +111,7 @@ static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOption
     worker->has_lamps = true; /* the program may count rays to them */
     worker->has_triangles = bp_effects_has(setup.program.effects, BP_EFFECT_TRIANGLES);
     worker->first_triangles = packed.tree.first_triangles;
+    worker->coloured_slots = packed.coloured_slots;
     worker->width = setup.width;
     worker->pixels = setup.width * setup.height;
     worker->replicates = setup.replicates;
