@@ -162,7 +162,7 @@ class SmallScenes(cli.ProgramTest):
 
     def test_lanes_without_a_path(self):
         """One path among many lanes leaves a surface towards an image that is sampled: the other lanes have no direction."""
-        none = "    path->radiance = zero3();\n    path_none_media"
+        none = "    path->radiance = zero3();\n    path_none_odds"
         made = "    const vreal none = sqrt(splat(-1));\n    path->direction = vec3(none, none, none);\n"
         self.environment.update(cli.broken_kernels(self, "integrator/path.cl", none, made + none))
         self.try_scene({**NOTHING, "spheres": 2, "first": "matte", "second": "edge", "sky": "image", "medium": "inside"})
