@@ -10,7 +10,7 @@ import cli
 
 SCENES = [name[:-5] for name in sorted(os.listdir(os.path.join(cli.SOURCE, "tests/agree/scenes"))) if name.endswith(".json")]
 # Small pictures by one kernel: what agrees is not the matter here.
-SMALL_SUITE = ("check", "--suite", "--effects", "all", "--width", "6", "--spp", "16", "--margin", "90")
+SMALL_SUITE = ("check", "--suite", "--effects", "all", "--width", "6", "--spp", "128", "--margin", "90")
 
 
 class Check(cli.ProgramTest):

@@ -264,8 +264,8 @@ __kernel void probe_paths(SCENE_PARAMETERS uint count, __global const real *rays
 #if SAMPLES_LAMPS
         path.wants_lamps = vbool_none;
 #endif
-        row[2 * segment] = alive && path.met ? (refined)slot_sphere[path.own_slot] : -1;
-        row[2 * segment + 1] = alive && path.met ? path.distance : 0;
+        row[2 * segment] = alive && path.latest.met ? (refined)slot_sphere[path.own_slot] : -1;
+        row[2 * segment + 1] = alive && path.latest.met ? path.latest.distance : 0;
     }
     row[2 * PROBE_PATH_SEGMENTS] = path.direction.x;
     row[2 * PROBE_PATH_SEGMENTS + 1] = path.direction.y;
