@@ -821,7 +821,7 @@ MUTANTS = [
                   "choose_lobe(met & vbool_of_uint(lobe->kind != splat_uint(LOBE_NONE)), lobe, &path->lobe)")], [lamp_case("16.1")]),
     Mutant("lamps seen by the camera are weighted", "a weight without a vertex",
            [patch(KERNEL, "path->lobe.kind = choose_uint(fresh, splat_uint(LOBE_NONE), path->lobe.kind);",
-                  "path->lobe.axis = choose3(fresh, direction, path->lobe.axis);\n"
+                  "path->lobe.axis = choose3(fresh, path->direction, path->lobe.axis);\n"
                   "    path->lobe.kind = choose_uint(fresh, splat_uint(LOBE_HEMISPHERE), path->lobe.kind);")],
            [lamp_case("4.4")]),
     Mutant("the colour of a normal is weighted as a lamp", "what is never sampled must count whole",
