@@ -157,7 +157,7 @@ def check_modules(prefix, library):
     for present in (True, False):
         done = subprocess.run([prefix / "bin/ballpark", "render", prefix / "share/ballpark/scenes/cover.json"], capture_output=True,
                               text=True, env=environment, check=False)
-        told = "knows of 1" if present else "ballpark_mpi.so cannot be loaded"
+        told = "MPI reports 1" if present else "ballpark_mpi.so cannot be loaded"
         assert done.returncode == 2 and told in " ".join(done.stderr.split()), done.stderr
         (library.parent / "ballpark/ballpark_mpi.so").unlink(missing_ok=True)
 
