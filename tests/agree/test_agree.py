@@ -79,7 +79,7 @@ def main():
         # A seed of its own, so that scenes that are added change no other's.
         options = [*more, "--seed", str(seed + zlib.crc32(name.encode()))]
         report, trouble = check(program, scene, samples, options)
-        for times in (4, 16):  # what is too noisy is judged by more samples
+        for times in (4, 16, 64):  # what is too noisy is judged by more samples
             if report is None or all(one["results"][0]["verdict"] != "inconclusive" for one in report.get("scenes", [report])):
                 break
             report, trouble = check(program, scene, times * int(samples), options)
