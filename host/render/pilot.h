@@ -6,8 +6,8 @@
  * camera have the same pilot, whatever the seed, and films of one scene share it.
  *
  * A sample of the picture finds a lamp or a disc by rays to it, where its path stands on a matte surface.
- * What it finds by chance is light that comes to a matte point by way of glass or mirrors, or from triangles
- * that emit, and light that is seen directly or by such ways. If the light is small, that is rare, and as
+ * What it finds by chance is light that comes to a matte point by way of glass or mirrors, and light that is
+ * seen directly or by such ways. If the light is small, that is rare, and as
  * long as it has not happened, the samples' spread does not know of it. A pilot does: some paths from the
  * lights at everything specular, followed to where they are seen; and some camera paths, to see how close
  * they come to lights. */
