@@ -238,7 +238,7 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
         both += is_lamp && is_lit;
     }
     for (size_t t = 0; t < scene->triangle_count; ++t) {
-        const bool is_lamp = bp_triangle_emits(scene, t);
+        const bool is_lamp = bp_shape_emits(scene, scene->sphere_count + t);
         const bool is_lit = bp_material_is_lit(&scene->materials[scene->triangles[t].material]);
         lamps += is_lamp;
         lit += is_lit;

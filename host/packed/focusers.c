@@ -42,8 +42,7 @@ static bool is_mirror(const BpScene *scene, size_t i) {
 
 /* Glass whose index is nearly that of its outside bends nothing: it does not focus. */
 static bool is_focuser(const BpScene *scene, size_t i) {
-    return !bp_sphere_emits(scene, i) &&
-           (is_mirror(scene, i) || bp_sphere_refraction_index(scene, i) > 1.001);
+    return !bp_shape_emits(scene, i) && (is_mirror(scene, i) || bp_sphere_refraction_index(scene, i) > 1.001);
 }
 
 static double distance(const double a[3], const double b[3]) {

@@ -45,25 +45,12 @@ typedef struct Run {
     Box box; /* around the spheres and their ways */
 } Run;
 
-static bool emits(const BpScene *scene, uint32_t material) {
-    const double *emit = scene->materials[material].emit;
-    return emit[0] > 0 || emit[1] > 0 || emit[2] > 0;
-}
-
-bool bp_sphere_emits(const BpScene *scene, size_t i) {
-    return emits(scene, scene->spheres[i].material);
-}
-
-bool bp_triangle_emits(const BpScene *scene, size_t t) {
-    return emits(scene, scene->triangles[t].material);
-}
-
 size_t bp_enclosing_lamp(const BpScene *scene) {
     /* Only the largest sphere can. */
     size_t largest = 0;
     for (size_t i = 1; i < scene->sphere_count; ++i)
         if (fabs(scene->spheres[i].radius) > fabs(scene->spheres[largest].radius)) largest = i;
-    if (scene->sphere_count < 2 || scene->triangle_count > 0 || !bp_sphere_emits(scene, largest))
+    if (scene->sphere_count < 2 || scene->triangle_count > 0 || !bp_shape_emits(scene, largest))
         return SIZE_MAX;
     const BpSphere *shell = &scene->spheres[largest];
     for (size_t i = 0; i < scene->sphere_count; ++i) {
@@ -80,7 +67,7 @@ size_t bp_enclosing_lamp(const BpScene *scene) {
 }
 
 bool bp_sphere_is_sampled(const BpScene *scene, size_t i, size_t enclosing) {
-    return i != enclosing && bp_sphere_emits(scene, i);
+    return i != enclosing && bp_shape_emits(scene, i);
 }
 
 /* ---- runs ---- */
@@ -322,7 +309,7 @@ static uint32_t collect_lamps(const BpScene *scene, const BpTree *tree, const ui
         lamp->power = bp_luminance_of(emit) * lamp->radius * lamp->radius;
     }
     for (size_t t = 0; t < scene->triangle_count; ++t) {
-        if (!bp_triangle_emits(scene, t)) continue;
+        if (!bp_shape_emits(scene, scene->sphere_count + t)) continue;
         Lamp *lamp = &builder->lamps[count];
         *lamp = (Lamp){.slot = slot_of[scene->sphere_count + t]};
         place_triangle(tree, bp_luminance_of(scene->materials[scene->triangles[t].material].emit), lamp);

@@ -25,12 +25,6 @@ typedef struct BpLampTree {
     uint32_t *slot_lamp;     /* slot_count */
 } BpLampTree;
 
-/* Triangle `t` emits. */
-bool bp_triangle_emits(const BpScene *scene, size_t t);
-
-/* Sphere `i` emits. */
-bool bp_sphere_emits(const BpScene *scene, size_t i);
-
 /* The sphere that emits and encloses every other sphere, or SIZE_MAX. A scene of one sphere has none. */
 size_t bp_enclosing_lamp(const BpScene *scene);
 

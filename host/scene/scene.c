@@ -239,10 +239,8 @@ const char *bp_triangle_name(const BpScene *scene, size_t triangle, char text[BP
 
 size_t bp_scene_emitting_triangles(const BpScene *scene) {
     size_t count = 0;
-    for (size_t t = 0; t < scene->triangle_count; t++) {
-        const double *emit = scene->materials[scene->triangles[t].material].emit;
-        count += emit[0] > 0 || emit[1] > 0 || emit[2] > 0;
-    }
+    for (size_t t = 0; t < scene->triangle_count; t++)
+        count += bp_shape_emits(scene, scene->sphere_count + t);
     return count;
 }
 

@@ -257,8 +257,8 @@ const char *bp_triangle_name(const BpScene *scene, size_t triangle, char text[BP
 /* The triangles that stand in the scene itself; those of meshes follow. */
 size_t bp_scene_listed_triangles(const BpScene *scene);
 
-/* Shapes are the spheres, then the triangles: how many, the material of one, into materials[], and its own
- * albedo, into albedos[], or BP_NO_ALBEDO. */
+/* Shapes are the spheres, then the triangles: how many, the material of one, into materials[], its own
+ * albedo, into albedos[], or BP_NO_ALBEDO, and whether it emits. */
 static inline size_t bp_scene_shapes(const BpScene *scene) {
     return scene->sphere_count + scene->triangle_count;
 }
@@ -269,6 +269,10 @@ static inline uint32_t bp_shape_material(const BpScene *scene, size_t shape) {
 static inline uint32_t bp_shape_albedo(const BpScene *scene, size_t shape) {
     return shape < scene->sphere_count ? scene->spheres[shape].albedo
                                        : scene->triangles[shape - scene->sphere_count].albedo;
+}
+static inline bool bp_shape_emits(const BpScene *scene, size_t shape) {
+    const double *emit = scene->materials[bp_shape_material(scene, shape)].emit;
+    return emit[0] > 0 || emit[1] > 0 || emit[2] > 0;
 }
 /* "sphere", "triangle", or "shape" where there are both. */
 const char *bp_scene_noun(const BpScene *scene);
