@@ -1,4 +1,4 @@
-/* clock.h: seconds since some fixed moment, for measuring; never set back. */
+/* clock.h: monotonic wall-clock time and processor time, in seconds. */
 #ifndef BP_BASE_CLOCK_H
 #define BP_BASE_CLOCK_H
 
@@ -15,7 +15,7 @@ static inline double bp_clock_seconds(void) {
     return bp_clock_read(CLOCK_MONOTONIC);
 }
 
-/* CPU time that all threads of this process spent on all cores, which other programs hardly disturb. */
+/* CPU time of all threads of this process; other load on the machine hardly affects it. */
 static inline double bp_processor_seconds(void) {
     return bp_clock_read(CLOCK_PROCESS_CPUTIME_ID);
 }

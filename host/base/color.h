@@ -1,4 +1,4 @@
-/* color.h: what the numbers of Rec. 709 and sRGB colours mean.
+/* color.h: luminance and transfer function of Rec. 709 and sRGB colours.
  *
  * Knows: published constants.   Does not know: pictures. */
 #ifndef BP_BASE_COLOR_H
@@ -31,7 +31,7 @@ static inline double bp_linear_from_srgb(double encoded) {
     return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-/* The same for every byte of an 8-bit colour, for millions of colours. */
+/* A table of the linear value of each byte, for converting millions of 8-bit colours. */
 static inline void bp_linear_of_bytes(double linear[256]) {
     for (int b = 0; b < 256; b++) linear[b] = bp_linear_from_srgb(b / 255.0);
 }

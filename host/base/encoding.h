@@ -1,18 +1,18 @@
-/* encoding.h: in which encoding a text is, by its first bytes.
+/* encoding.h: detects the encoding of a text from its first bytes.
  *
  * In:    the beginning of a text.   Out: whether it is UTF-8 with a byte order mark, or is not UTF-8.
- * Knows: the marks, and how letters of ASCII look in wider encodings.
+ * Knows: the marks, and the bytes of ASCII letters in wider encodings.
  * Does not know: what the text means. */
 #ifndef BP_BASE_ENCODING_H
 #define BP_BASE_ENCODING_H
 
 #include <stddef.h>
 
-/* The bytes of the byte order mark with which a text in UTF-8 may begin, and which belong to none of its
- * lines: 3, or 0 where there is none. */
+/* The length of a UTF-8 byte order mark at the start of `text`, which belongs to no line: 3, or 0 if there is
+ * none. */
 size_t bp_text_mark(const void *text, size_t length);
 
-/* "UTF-16" or "UTF-32" where a text begins like one, with a mark or without; NULL where it does not. */
+/* "UTF-16" or "UTF-32" if the text begins like one, with or without a mark; otherwise NULL. */
 const char *bp_text_wide(const void *text, size_t length);
 
 /* The message about such a text; both %s are its encoding. */

@@ -4,7 +4,7 @@
  * Knows: jansson's allocations.    Does not know: what a document means.
  *
  * jansson reports a lack of memory as a syntax error, and sometimes drops a character without reporting
- * anything. So the program has it allocate through functions that record a failure. A program that uses
+ * anything. So the program installs allocation functions that record a failure. A program that uses
  * libballpark may have allocation functions of its own; there, errno decides. */
 #ifndef BP_BASE_JSON_MEMORY_H
 #define BP_BASE_JSON_MEMORY_H
@@ -12,7 +12,7 @@
 #include <jansson.h>
 #include <stdbool.h>
 
-/* For main, once, before jansson is used. */
+/* Called once by main, before jansson is used. */
 void bp_json_memory_watch(void);
 
 /* Whether an allocation of jansson has ever failed: any document made in this process may be incomplete. */

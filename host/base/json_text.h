@@ -1,4 +1,4 @@
-/* json_text.h: text of any bytes as a text of JSON.
+/* json_text.h: arbitrary bytes as a JSON string.
  *
  * In:    the name of a file, a driver's message.   Out: a jansson string.
  * Knows: that JSON is UTF-8 and names of files need not be.   Does not know: what the text means. */

@@ -1,8 +1,7 @@
-/* known_file.h: kinds of files that are often given in place of another.
+/* known_file.h: recognises files that are often given by mistake.
  *
- * In:    a file's name and its first bytes.   Out: what it is, and what can be done with it.
- * Knows: how such files begin and what they are called.   Does not know: what was expected, or how to read
- * them. */
+ * In:    a file's name and its first bytes.   Out: its kind, and advice.
+ * Knows: the first bytes and names of such files.   Does not know: what was expected, or how to read them. */
 #ifndef BP_BASE_KNOWN_FILE_H
 #define BP_BASE_KNOWN_FILE_H
 
@@ -26,8 +25,7 @@ typedef struct BpKnownFile {
     const char *what; /* "a PNG picture"; static */
 } BpKnownFile;
 
-/* Whether it is one of them, by its first bytes or by its name, which may be a path or the name of nothing.
- */
+/* Whether it is one of them, by its first bytes or its name, which may be a path and need not exist. */
 bool bp_known_file(const char *name, const char *bytes, size_t length, BpKnownFile *found);
 
 /* Advice on such a file where a scene was expected: "; ..." or "". Static. */

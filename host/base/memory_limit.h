@@ -1,6 +1,6 @@
-/* memory_limit.h: whether the system refuses this process memory.
+/* memory_limit.h: the memory limit of this process, and whether it is reached.
  *
- * In:    the system's limit (ulimit -v).   Out: what it is; whether it is reached.
+ * In:    the system's limit (ulimit -v).   Out: its value; whether it is reached.
  * Knows: the system's calls.   Does not know: who needs memory. */
 #ifndef BP_BASE_MEMORY_LIMIT_H
 #define BP_BASE_MEMORY_LIMIT_H

@@ -1,4 +1,4 @@
-/* message_text.h: names and numbers as messages quote them.
+/* message_text.h: names and numbers for messages.
  *
  * In:    names, numbers, notes.   Out: the nearest known name; printable text; a list of notes.
  * Knows: spelling, decimal numbers.   Does not know: what the names and numbers are of. */
@@ -9,9 +9,9 @@
 #include <stddef.h>
 
 /* The name nearest to `name` by edit distance (swaps of neighbours count as one edit), or NULL if none is
- * near enough to be what was meant. */
+ * similar enough. */
 const char *bp_nearest_name(const char *name, const char *const *names, size_t name_count);
-/* `text` fit for a message: cut to size, control characters replaced. */
+/* Makes `text` safe for a message: truncated to `size`, control characters replaced. */
 void bp_printable(const char *text, char *out, size_t size);
 
 /* Adds a note to a list of them, "one; other", unless it is there already or does not fit. */

@@ -2,7 +2,8 @@
  * not every machine has.
  *
  * In:    its file's name, the environment.   Out: the struct of functions that it exports.
- * Knows: where modules lie, that their versions must fit.   Does not know: what any of them does. */
+ * Knows: where modules are installed, that their versions must match.   Does not know: what any of them does.
+ */
 #ifndef BP_BASE_MODULE_H
 #define BP_BASE_MODULE_H
 
@@ -17,8 +18,8 @@ typedef struct BpModuleName {
     bool is_global; /* its symbols are for libraries that it loads itself */
 } BpModuleName;
 
-/* The module lies beside the program, as it is built, or in the program's library folder, as it is installed;
- * or where the environment variable points. It stays loaded until the program ends, since libraries leave
+/* Looks beside the program (as built), then in the program's library folder (as installed), unless the
+ * environment variable names a file. The module stays loaded until the program ends, since libraries leave
  * threads and handlers behind. BP_ERR_USAGE: the message begins with the file's name and describes the fault.
  */
 BpStatus bp_module_load(const BpModuleName *name, const void **interface, BpError *err);

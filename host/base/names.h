@@ -1,5 +1,5 @@
-/* names.h: the words for the values of the public enumerations, on the command line and in documents; and the
- * list of the settings that have them.
+/* names.h: the names of the values of the public enumerations, on the command line and in documents; and the
+ * list of settings.
  *
  * Knows: the enumerations of ballpark.h.   Does not know: who reads or writes the words. */
 #ifndef BP_BASE_NAMES_H
@@ -9,8 +9,9 @@
 
 /* The settings by which radiance is computed, besides the scene, its depth and the seed. X(type, member, its
  * option, what two of them are called): BpRenderOptions, BpProgramOptions, BpRenderReport, BpFilm and
- * BpFilmInfo each have these members. From the list come what a render notes in its film and its report, what
- * .bpa files record and a merge compares, and the members of documents. `bp_<member>_names` are its words. */
+ * BpFilmInfo each have these members. From the list follow what a render records in its film and report, what
+ * .bpa files contain and a merge compares, and the members of documents. `bp_<member>_names` are its names.
+ */
 #define BP_SETTING_LIST(X)                                                                                   \
     X(BpSampler, sampler, "sampler", "samplers")                                                             \
     X(BpPrecision, precision, "precision", "precisions")                                                     \
@@ -22,7 +23,7 @@
 /* Expands the list to members of a struct. */
 #define BP_SETTING_MEMBER(type, member, option, plural) type member;
 
-/* The words of an enumeration, each by its value; NULL ends the list. */
+/* The names of an enumeration, indexed by value; NULL ends the list. */
 #define BP_SETTING_NAMES(type, member, option, plural) extern const char *const bp_##member##_names[];
 BP_SETTING_LIST(BP_SETTING_NAMES)
 #undef BP_SETTING_NAMES

@@ -1,9 +1,9 @@
-/* output_target.h: which file a path to be written leads to.
+/* output_target.h: resolves the path of an output file.
  *
- * In:    a path that need not exist.   Out: the file, the open descriptor or the place that it stands for.
- * Knows: symbolic links, /dev/stdout and its relatives, inodes.   Does not know: how anything is written.
+ * In:    a path that need not exist.   Out: the file, the open descriptor or the place that it refers to.
+ * Knows: symbolic links, /dev/stdout, /dev/fd, inodes.   Does not know: how anything is written.
  *
- * Two names are compared by what they lead to and never by their letters: "a.png", "./a.png", a symbolic link
+ * Paths are compared by the file they refer to, never by their spelling: "a.png", "./a.png", a symbolic link
  * and a hard link are one file. A file that does not exist yet is identified by the inode of its folder and
  * its name in it. */
 #ifndef BP_BASE_OUTPUT_TARGET_H
@@ -36,10 +36,10 @@ char *bp_folder_of(const char *path);
 
 /* Whether writing to `a` would overwrite `b`: both lead to one regular file, to one place where no file is
  * yet, or to one descriptor. Devices and pipes may be named twice. "-" is standard output as `a`, and as `b`
- * the descriptor `b_stream`. What cannot be followed is not the same as anything. */
+ * the descriptor `b_stream`. A path that cannot be resolved equals no other. */
 bool bp_output_same(const char *a, const char *b, int b_stream);
 
-/* Adds to an error whose message ends with the reason of that errno what helps, such as "; make room". */
+/* Appends a remedy for that errno, such as "; make room", to an error whose message ends with its reason. */
 void bp_output_advise(BpError *err, int error_number);
 /* "cannot ACTION PATH: reason; remedy", BP_ERR_FILE; `error_number` is an errno. */
 BpStatus bp_output_fail(BpError *err, const char *action, const char *path, int error_number);

@@ -1,19 +1,19 @@
 /* output_temporary.h: the temporary files behind output_file.h.
  *
- * In:    where a file is to stand.   Out: a file without a name, or with a unique one.
+ * In:    a target path.   Out: a file without a name, or with a unique one.
  * Knows: unnamed files, links, renames, the names that are in use.   Does not know: what is written, how
  * errors are reported: everything here returns an errno.
  *
- * The names of the unfinished temporaries are kept in one place, so that the thread that ends the program at
- * a signal can remove them. */
+ * The names of unfinished temporaries are kept in one list, so that the thread that ends the program on a
+ * signal can remove them. */
 #ifndef BP_BASE_OUTPUT_TEMPORARY_H
 #define BP_BASE_OUTPUT_TEMPORARY_H
 
 #include <stdbool.h>
 #include <sys/types.h>
 
-/* Creates the temporary of `target` in its folder, to be read and written: without a name where the system
- * can (*unnamed), else as TARGET.XXXXXX (*name, heap). The descriptor, or -1 and errno. */
+/* Creates the temporary of `target` in its folder, for reading and writing: without a name where the system
+ * supports it (*unnamed), else as TARGET.XXXXXX (*name, heap). Returns the descriptor, or -1 and errno. */
 int bp_temporary_create(const char *target, mode_t mode, bool *unnamed, char **name);
 /* The same with a name in `folder`. */
 int bp_temporary_create_in(const char *folder, const char *target, mode_t mode, char **name);
@@ -21,8 +21,7 @@ int bp_temporary_create_in(const char *folder, const char *target, mode_t mode, 
 int bp_temporary_create_elsewhere(const char *target, mode_t mode, char **name);
 
 /* Puts the finished temporary at `target`; 0, or an errno. After a failure it still exists, as it was or with
- * a name. `replace`: in the place of what is there; otherwise EEXIST if anything exists there by
- * then. */
+ * a name. `replace`: replaces an existing file; otherwise EEXIST if one exists by then. */
 int bp_temporary_place(bool *unnamed, char **name, int descriptor, const char *target, bool replace);
 
 /* Gives a finished temporary without a name one in $TMPDIR or /tmp, by copying it; 0, or an errno. */
@@ -33,7 +32,7 @@ int bp_temporary_copy(int descriptor, const char *target);
 
 /* Removes the temporary, and forgets and frees its name. Accepts NULL. */
 void bp_temporary_remove(char **name);
-/* Hands the name over to the caller: nothing here will remove that file any more. */
+/* Transfers the name to the caller; the file will no longer be removed. */
 char *bp_temporary_keep(char **name);
 
 /* See bp_output_abandon(). */

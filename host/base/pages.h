@@ -8,16 +8,16 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Asks the system to back an array by pages of some megabytes, if it is large and the system has them on
- * request: an array of millions of spheres is then filled without a fault for every 4096 bytes. Contents
- * stay. Returns `memory`, which may be NULL. */
+/* Requests pages of some megabytes for a large array, if the system has them: filling an array of millions of
+ * spheres then does not cause a page fault for every 4096 bytes. The contents stay. Returns `memory`, which
+ * may be NULL. */
 void *bp_large_pages(void *memory, size_t bytes);
 
 /* Memory for `count` elements of `size` bytes, not zeroed, on pages of its own: large ones, if it is large.
  * Devices that share the host's memory can use it in place. NULL: out of memory. Free with free(). */
 void *bp_own_pages(size_t count, size_t size);
 
-/* Whether memory begins a page, as that of bp_own_pages() does. */
+/* Whether `memory` is aligned to a page, as that of bp_own_pages() is. */
 bool bp_begins_page(const void *memory);
 
 #endif

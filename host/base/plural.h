@@ -1,4 +1,4 @@
-/* plural.h: the ending of a noun after its number. */
+/* plural.h: the plural ending of a noun after a number. */
 #ifndef BP_BASE_PLURAL_H
 #define BP_BASE_PLURAL_H
 

@@ -22,14 +22,14 @@
 #endif
 
 /* Fills `err` (if not NULL) with `code` and the formatted message, and returns `code`, so that a failing
- * function can end with `return bp_fail(err, BP_ERR_..., "...")`. An earlier content of `err` is released. */
+ * function can end with `return bp_fail(err, BP_ERR_..., "...")`. Earlier content of `err` is released. */
 BpStatus bp_fail(BpError *err, BpStatus code, const char *format, ...) BP_PRINTF_LIKE(3, 4);
 
 /* Adds the place of the fault to `err`: `file` (copied), `line` and `column` from 1, 0 when unknown. */
 void bp_error_at(BpError *err, const char *file, int line, int column);
 
-/* Adds what helps to `err`, where that has other names on the command line, in Python and in C (remedy.h):
- * the message must not name it. `value`: what the remedy needs, or "". */
+/* Adds a remedy to `err`, which is worded for the command line, Python or C (remedy.h): the message must not
+ * contain it. `value`: what the remedy needs, or "". */
 void bp_error_set_remedy(BpError *err, BpRemedy remedy, const char *value);
 
 /* bp_fail() with a remedy that needs no value. */

@@ -23,8 +23,7 @@ unsigned bp_thread_pool_size(const BpThreadPool *pool);
  * all are done. What they wrote is visible to the caller. */
 void bp_parallel_for(BpThreadPool *pool, BpParallelWork *work, void *context, uint32_t pieces);
 
-/* Long arrays are worked through in blocks of this many elements, the last one perhaps shorter; each is a
- * piece. */
+/* Long arrays are processed in blocks of this many elements, one per piece; the last may be shorter. */
 #define BP_BLOCK 16384u
 
 static inline uint32_t bp_block_count(size_t elements) {

@@ -1,4 +1,4 @@
-/* words.h: tables of what belongs to each value of an enumeration, none of which can be forgotten.
+/* words.h: tables indexed by an enumeration, whose completeness the compiler checks.
  *
  * In:    a list X(value, what) of all values of an enumeration.   Out: an array by value.
  * Knows: that compilers warn of a switch that lacks a value (-Wswitch, a part of -Wall).
@@ -20,8 +20,8 @@
 #define BP_NOBODY_CALLS
 #endif
 
-/* `declaration[] = { ... }`, for the outermost level of a file, and an uncalled function, in which the
- * compiler finds what LIST lacks. */
+/* `declaration[] = { ... }`, for the outermost level of a file, and an uncalled function whose switch makes
+ * the compiler warn of values that LIST lacks. */
 #define BP_WORDS(type, declaration, LIST)                                                                    \
     BP_WORDS_COMPLETE(type, LIST)                                                                            \
     declaration[] = {LIST(BP_WORD_AT)}

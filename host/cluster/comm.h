@@ -1,6 +1,6 @@
 /* comm.h: the communicator: the ranks that work on one job, of which this process is one.
  *
- * In:    what this rank knows.   Out: what the others know; decisions that are the same on all ranks.
+ * In:    data of this rank.   Out: data of the others; decisions that are the same on all ranks.
  * Knows: the module that carries messages, when to load it.   Does not know: MPI, pictures, the command line.
  *
  * A communicator of NULL is this process alone: then every function below does nothing and succeeds. Unless a
@@ -16,15 +16,15 @@
 typedef struct BpComm BpComm;
 
 /* *comm stays NULL where this process was started alone, or the environment says BALLPARK_MPI=off. The module
- * is `ballpark_mpi.so` beside the program or in its library folder, or what BALLPARK_MPI names. `arguments`:
- * what all ranks must have been given alike. BP_ERR_USAGE: several were started, but the module is missing,
- * counts another number of ranks, or the ranks were given different arguments. */
+ * is `ballpark_mpi.so` beside the program or in its library folder, or what BALLPARK_MPI names. `arguments`
+ * must be the same on all ranks. BP_ERR_USAGE: several were started, but the module is missing, reports
+ * another number of ranks, or the ranks were given different arguments. */
 BpStatus bp_comm_begin(char *const *arguments, BpComm **comm, BpError *err);
 /* Ends all messages. Accepts NULL and the address of NULL. */
 void bp_comm_end(BpComm **comm);
 
-/* No exchange: this rank may ask at any time. */
-uint32_t bp_comm_rank(const BpComm *comm); /* 0 when alone, and of the one that decides */
+/* No exchange: may be called at any time. */
+uint32_t bp_comm_rank(const BpComm *comm); /* 0 when alone, and for the rank that decides */
 uint32_t bp_comm_size(const BpComm *comm); /* 1 when alone */
 uint32_t bp_comm_local_rank(const BpComm *comm);
 static inline bool bp_comm_is_root(const BpComm *comm) {
@@ -51,9 +51,9 @@ BpStatus bp_comm_add_32(BpComm *comm, uint32_t *numbers, size_t count, BpError *
 BpStatus bp_comm_gather_texts(BpComm *comm, const char *text, char ***texts, BpError *err);
 
 /* The common status of all ranks: `status` if all succeeded; else, on all of them, the status of the first
- * that failed. Rank 0's `err` then tells what happened, and on which rank; that of the others need not be
- * shown. Once it has failed, it fails at once and without an exchange. A failed exchange counts as a failure.
- */
+ * that failed. Rank 0's `err` then describes the failure and names the rank; the others' need not be
+ * displayed. After the first failure, it fails at once and without an exchange. A failed exchange counts as a
+ * failure. */
 BpStatus bp_comm_all_ok(BpComm *comm, BpStatus status, BpError *err);
 
 /* Between the two, the ranks depend on each other, and a rank that fails cannot agree with the others. No
@@ -66,7 +66,7 @@ void bp_comm_prefix_rank(const BpComm *comm, BpError *err);
 /* Ends all ranks' processes at once; does not return when there are other ranks. By one rank alone. */
 void bp_comm_abort(BpComm *comm, int exit_code);
 
-/* While ranks work apart: tells all others something, once; and whether another has. No exchange. */
+/* Between exchanges: notifies all other ranks, once; whether another rank has notified this one. */
 void bp_comm_notify(BpComm *comm);
 bool bp_comm_was_notified(BpComm *comm);
 

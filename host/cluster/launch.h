@@ -1,6 +1,6 @@
 /* launch.h: whether this process is one of several that a launcher started together.
  *
- * In:    the environment.   Out: how many, and by what.
+ * In:    the environment.   Out: the number of processes, the rank of this one, the launcher.
  * Knows: the variables of mpirun, mpiexec and srun.   Does not know: MPI. */
 #ifndef BP_CLUSTER_LAUNCH_H
 #define BP_CLUSTER_LAUNCH_H

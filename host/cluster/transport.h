@@ -1,12 +1,11 @@
-/* transport.h: what carries bytes between the ranks of a job: the interface of a module that the program
- * loads.
+/* transport.h: the interface of the loadable module that carries messages between the ranks of a job.
  *
  * In:    bytes, integers.   Out: those of other ranks, or sums over all of them.
  * Knows: nothing.   Does not know: MPI (the modules do), what the bytes mean (comm.h's callers do).
  *
  * A module is a shared object that exports one struct, `bp_transport`. So the program needs no library for
  * messages unless it was started as one of several ranks. All ranks call the same functions in the same
- * order. Functions return NULL, or what went wrong, valid until the next call. */
+ * order. Functions return NULL, or an error message that is valid until the next call. */
 #ifndef BP_CLUSTER_TRANSPORT_H
 #define BP_CLUSTER_TRANSPORT_H
 
@@ -37,11 +36,11 @@ typedef struct BpTransport {
     const char *(*allreduce_or)(uint32_t *bits); /* on all ranks the bits that any rank has set */
     const char *(*test)(bool *done);
 
-    /* Integers of `width` bytes, 4 or 8, become on rank 0 the sums over all ranks; elsewhere they stay. Does
-     * not return before that is done, and may use a core meanwhile: let all ranks meet before. */
+    /* Integers of `width` bytes, 4 or 8, become on rank 0 the sums over all ranks; elsewhere they stay.
+     * Blocks, and may keep a core busy meanwhile, so synchronise the ranks first. */
     const char *(*add)(void *numbers, uint64_t count, uint32_t width);
 
-    /* A word from one rank to all others, which they find when they look. */
+    /* Notifies all other ranks, which poll for it. */
     void (*notify)(void);
     bool (*was_notified)(void);
 

@@ -14,15 +14,14 @@
  * No bias: a half's count is decided by errors and segments of halves of the other colour, in samples of the
  * first quarter only, whose number depends on no sample. So whether a pixel gets more samples does not depend
  * on the values of its own samples, and its mean stays unbiased. (Deciding by a pixel's own samples makes
- * pictures darker: pixels that have not yet found the light would stop.)
- */
+ * pictures darker: pixels that have not yet found the light would stop.) */
 #ifndef BP_FILM_ADAPTIVE_H
 #define BP_FILM_ADAPTIVE_H
 
 #include "film.h"
 
 #define BP_ADAPTIVE_FIRST 16u /* samples that every pixel has before any decision */
-/* The least mean of an adaptive render: below it there is next to nothing to decide. */
+/* The smallest mean of an adaptive render: below it there is next to nothing to decide. */
 #define BP_ADAPTIVE_MEAN_MIN (2 * BP_ADAPTIVE_FIRST)
 
 typedef struct BpAdaptive BpAdaptive;

@@ -117,15 +117,15 @@ uint64_t bp_scene_hash(const BpScene *scene);
  * BP_ERR_LIMIT or BP_ERR_MEMORY. */
 BpStatus bp_film_create(uint32_t width, uint32_t height, uint32_t replicates, BpFilm **film, BpError *err);
 
-/* Notes that every pixel gets the samples [first, first + count), count > 0; adjoining ranges become one.
+/* Records that every pixel gets the samples [first, first + count), count > 0; adjoining ranges are joined.
  * BP_ERR_USAGE for an overlap or samples past 2^32; BP_ERR_LIMIT when a replicate would get more than
  * BP_REPLICATE_SAMPLES_MAX samples, past which 64 bits could overflow. Unchanged on failure. */
 BpStatus bp_film_add_range(BpFilm *film, uint64_t first, uint64_t count, BpError *err);
-/* The same for `count` ranges, sorted and disjoint, at once. BP_ERR_LIMIT also where more than
- * BP_SAMPLE_RANGES_MAX separate ranges would come of it. */
+/* The same for `count` ranges, sorted and disjoint, at once. BP_ERR_LIMIT also if the result had more than
+ * BP_SAMPLE_RANGES_MAX separate ranges. */
 BpStatus bp_film_add_ranges(BpFilm *film, const struct BpSampleRange *ranges, size_t count, BpError *err);
 
-/* BP_ERR_USAGE names what differs of scene, size and options, which two films must share to be merged. */
+/* Two films can be merged only if scene, size and options are equal. BP_ERR_USAGE names those that differ. */
 BpStatus bp_film_check_same(const BpFilm *a, const BpFilm *b, BpError *err);
 
 /* Gives `film` fine sums, all 0, unless it has them. BP_ERR_MEMORY. */
@@ -143,7 +143,7 @@ BpStatus bp_film_add_aovs(BpFilm *film, BpError *err);
 void bp_film_drop_aovs(BpFilm *film);
 /* Both have them, and the same size. */
 void bp_film_copy_aovs(const BpFilm *from, BpFilm *to);
-/* Copies them from or to a picture of the same size, in the place of what is there. BP_ERR_MEMORY. */
+/* Copies them from or to a picture of the same size, replacing its own. BP_ERR_MEMORY. */
 BpStatus bp_film_take_aovs(BpFilm *film, const BpPicture *picture, BpError *err);
 BpStatus bp_film_give_aovs(const BpFilm *film, BpPicture *picture, BpError *err);
 
@@ -193,9 +193,9 @@ const char *bp_film_invalid_causes(const BpFilm *film, char text[BP_INVALID_TEXT
 BpStatus bp_film_check_valid(const BpFilm *film, BpError *err);
 /* The fewest and the most valid samples that a pixel has, and the mean. */
 void bp_film_sample_counts(const BpFilm *film, uint64_t *least, uint64_t *most, double *mean);
-/* The most that rounding samples to steps can have changed the picture's mean luminance by, relative to it.
- * At most BP_ROUNDING_MAX unless samples were `coarse` and nothing brighter is seen; infinite for a picture
- * that is black because of it. */
+/* An upper bound of the relative change of the picture's mean luminance that is due to rounding samples to
+ * steps. At most BP_ROUNDING_MAX unless samples were `coarse` and nothing brighter is seen; infinite for a
+ * picture that is black because of it. */
 double bp_film_rounding(const BpFilm *film);
 /* Mean of linear pixel values over the picture (pixels without samples count as 0). */
 void bp_film_mean(const BpFilm *film, double mean[3]);

@@ -27,7 +27,7 @@ BpStatus bp_film_write_stream(const BpFilm *film, FILE *out, BpError *err);
 BpStatus bp_film_read_stream(FILE *in, const char *name, BpFilm **film, BpError *err);
 
 /* The header of the .bpa file at `path`: a film without sums and counts, and a plan without its decisions.
- * Fails as bp_film_read() does; damage behind the header goes unnoticed. */
+ * Fails as bp_film_read() does; damage behind the header is not detected. */
 BpStatus bp_film_read_header(const char *path, BpFilm **film, BpError *err);
 
 #endif

@@ -1,13 +1,13 @@
-/* film_stream.h: the numbers of a .bpa file, to its bytes and back.
+/* film_stream.h: packs and unpacks the arrays of a .bpa file.
  *
  * In and out: arrays of whole numbers of 4 or 8 bytes, and floats by their bits.
  * Knows: byte planes, zlib, the checksum.   Does not know: what the numbers mean (film_file.h does).
  *
- * All numbers are one zlib stream (RFC 1950). In it each array stands in blocks of 65536
- * numbers, the last one shorter, and each block byte by byte: first the lowest byte of every number, then the
- * next. The high bytes of neighbours are alike and the lowest are often 0, so that a block shrinks to a third
- * or less. zlib looks for runs alone: more than that costs several times the time and gains next to nothing.
- * Planes that are almost noise are stored as they are, in the same stream. */
+ * All numbers are one zlib stream (RFC 1950). Each array is stored in blocks of 65536 numbers, the last one
+ * shorter, and each block in byte planes: first the lowest byte of every number, then the next. The high
+ * bytes of neighbours are similar and the lowest are often 0, so a block shrinks to a third or less. zlib
+ * uses its strategy for runs: others take several times as long and gain next to nothing. Planes that are
+ * almost noise are stored uncompressed in the same stream. */
 #ifndef BP_FILM_FILM_STREAM_H
 #define BP_FILM_FILM_STREAM_H
 
@@ -64,7 +64,7 @@ BpStatus bp_film_source_end(BpFilmSource *source, BpError *err);
 /* Reads what is left, and compares the checksum. BP_ERR_FILE: the file is damaged. */
 BpStatus bp_film_source_verify(BpFilmSource *source, BpError *err);
 
-/* The most numbers that so many bytes of zlib's stream can hold, in bytes: no more is to be allocated.
+/* An upper bound of the unpacked size of `packed_bytes` bytes of a zlib stream, which limits allocations.
  * Deflate (RFC 1951) makes at most 258 bytes of 2 bits. */
 uint64_t bp_film_unpacked_max(uint64_t packed_bytes);
 

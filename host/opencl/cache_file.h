@@ -1,8 +1,8 @@
 /* cache_file.h: a file of the user's cache, which another process may write, damage or remove at any time.
  *
  * In:    a path, bytes.   Out: the bytes, or none.
- * Knows: files and their owners.   Does not know: what is kept, or whether it is whole: a file has a
- * checksum. */
+ * Knows: files and their owners.   Does not know: what is kept, or whether a file is complete, which its
+ * checksum shows. */
 #ifndef BP_OPENCL_CACHE_FILE_H
 #define BP_OPENCL_CACHE_FILE_H
 
@@ -15,13 +15,12 @@ typedef struct BpCachePart {
     size_t size;
 } BpCachePart;
 
-/* The whole of a file that belongs to this user and that no other user can write, heap, a zero byte behind
- * it; NULL: there is no such file. Reading sets the file's time, so that those of no use any more are the
- * oldest. */
+/* Reads a file that belongs to this user and that no other user can write; heap, with a zero byte appended.
+ * NULL: there is no such file. Updates the file's time, so that unused files are the oldest. */
 char *bp_cache_read(const char *path, size_t *size);
 
 /* Writes the parts one after the other. The file appears whole or not at all, and where it cannot be written
- * nothing happens. Not synced: a file that a loss of power cut short is known by its checksum. */
+ * nothing happens. Not synced: its checksum exposes a file that was truncated by a power failure. */
 void bp_cache_write(const char *path, const BpCachePart *parts, size_t count);
 
 #endif

@@ -1,4 +1,4 @@
-/* cache_folder.h: where Ballpark keeps what it can make again.
+/* cache_folder.h: the folder of the user's cache.
  *
  * In:    the environment.   Out: a path.
  * Knows: the XDG Base Directory Specification, how our text files there are named.
@@ -8,9 +8,9 @@
 
 #include <stdbool.h>
 
-/* $XDG_CACHE_HOME/ballpark or ~/.cache/ballpark, with `below` ("" or "/name") behind it; heap. NULL: the
- * environment names neither as an absolute path, or out of memory. `make`: creates the folder for this user
- * alone; that this failed shows when something is written there. */
+/* $XDG_CACHE_HOME/ballpark or ~/.cache/ballpark, followed by `below` ("" or "/name"); heap. NULL: the
+ * environment names neither as an absolute path, or out of memory. `make`: creates the folder, accessible to
+ * this user alone; a failure shows when a file is written there. */
 char *bp_cache_folder(const char *below, bool make);
 
 /* The path of the file "<kind>-<hash of identity>.txt" in that folder, heap; NULL: as above. */

@@ -1,12 +1,11 @@
-/* calibration.h: which arrangement of the kernel was found to be the fastest on a device, kept in the user's
- * cache.
+/* calibration.h: the fastest form of the kernel on a device, remembered in the user's cache.
  *
- * In:    a device's description, what was found.   Out: it again, in another process.
+ * In:    a device's description, a calibration.   Out: the calibration, in a later process.
  * Knows: what an outcome depends on.   Does not know: how it is found (render/calibrate.h).
  *
  * Each device has a small text file, ~/.cache/ballpark/calibration-....txt, which a person can read. It holds
- * all that the outcome depends on, in words, and a checksum: a file that is damaged, or about something else,
- * is as good as none. Pictures do not depend on it. */
+ * all that the outcome depends on, in words, and a checksum: a file that is damaged or does not match is
+ * ignored. Pictures do not depend on it. */
 #ifndef BP_OPENCL_CALIBRATION_H
 #define BP_OPENCL_CALIBRATION_H
 

@@ -1,6 +1,6 @@
-/* cl.h: OpenCL's header, a device that is open, and the errors of OpenCL's calls.
+/* cl.h: OpenCL's header, an open device, and the errors of OpenCL's calls.
  *
- * In:    the code of a call.   Out: a message.
+ * In:    an error code.   Out: a message.
  * Knows: OpenCL's version, its errors.   Does not know: how a device is opened (device.h). */
 #ifndef BP_OPENCL_CL_H
 #define BP_OPENCL_CL_H
@@ -16,7 +16,7 @@
 typedef struct BpBuilt {
     uint64_t key; /* hash of source and build options */
     cl_program program;
-    char *log; /* "" when the driver said nothing */
+    char *log; /* "" if the driver wrote none */
 } BpBuilt;
 
 typedef struct BpDevice {
@@ -30,8 +30,8 @@ typedef struct BpDevice {
 
 /* "CL_OUT_OF_RESOURCES" for -5, and so on; never NULL. */
 const char *bp_cl_error_name(cl_int code);
-/* bp_fail with the name of the call, the error's name and, for the common ones, what to do about it.
- * `device`: Optional; named in the message. */
+/* bp_fail() with the name of the call, the name of the error and, for common ones, a remedy. `device`:
+ * Optional; named in the message. */
 BpStatus bp_cl_fail(BpError *err, cl_int code, const char *call, const BpDevice *device);
 
 #endif

@@ -1,4 +1,4 @@
-/* device_choose.h: which device of a list a text means.
+/* device_choose.h: chooses a device of a list by a text.
  *
  * In:    a list of devices, a text as bp_device_find() takes it.
  * Out:   one of them, or a message that lists them.
@@ -13,8 +13,8 @@
     "`clinfo` shows what is there"
 
 /* As bp_device_find() of ballpark.h, among the `count` devices of a list, which is not empty. `text`:
- * Optional. BP_ERR_NO_DEVICE: it means none or several, or no device can render; BP_ERR_BROKEN_DEVICE: it
- * means one that cannot render. */
+ * Optional. BP_ERR_NO_DEVICE: no device or several match, or none can render; BP_ERR_BROKEN_DEVICE: the one
+ * that matches cannot render. */
 BpStatus bp_device_choose(const BpDeviceInfo *list, size_t count, const char *text, BpDeviceInfo *device,
                           BpError *err);
 

@@ -1,4 +1,4 @@
-/* device_find.h: which devices there are, and what each lacks; see also ballpark.h.
+/* device_find.h: lists the devices, and what each lacks; see also ballpark.h.
  *
  * In:    what the OpenCL loader finds.   Out: BpDeviceInfo, or a message that says what to install.
  * Knows: OpenCL's platforms and devices.   Does not know: what devices are used for. */
@@ -13,9 +13,9 @@ BpStatus bp_device_ids(BpDeviceInfo **list, cl_device_id **ids, size_t *count, B
 /* True when `name` stands in the device's list of extensions. */
 bool bp_device_has_extension(cl_device_id id, const char *name);
 
-/* Whether the device offers quotients and square roots of floats that are rounded as the exact ones are
- * (IEEE 754). Every program but those of -cl-fast-relaxed-math then asks for them, so that pictures have the
- * same bits; on other devices kernels round themselves (kernels/dialect/divide.cl). */
+/* Whether the device offers quotients and square roots of floats that are rounded as the exact ones are (IEEE
+ * 754). Every program but those of -cl-fast-relaxed-math then requests them, so that pictures have the same
+ * bits; on other devices kernels round themselves (kernels/dialect/divide.cl). */
 bool bp_device_rounds_quotients(cl_device_id id);
 
 #endif

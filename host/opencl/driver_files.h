@@ -1,7 +1,7 @@
 /* driver_files.h: the files by which the OpenCL loader finds its drivers.
  *
  * In:    OCL_ICD_VENDORS, OPENCL_VENDOR_PATH, folders of .icd files.   Out: the files, and what each names.
- * Knows: where loaders look: ocl-icd (libOpenCL(7)), and Khronos', which knows folders alone.
+ * Knows: where loaders look: ocl-icd (libOpenCL(7)), and Khronos', which accepts folders only.
  * Does not know: what the drivers do. */
 #ifndef BP_OPENCL_DRIVER_FILES_H
 #define BP_OPENCL_DRIVER_FILES_H
@@ -20,8 +20,8 @@ typedef struct BpDriverFiles {
 
 void bp_driver_files_find(BpDriverFiles *drivers);
 
-/* The library that the file names on its first line; a library named in its place stands for itself. "":
- * nothing, and then the loader finds no driver there either. */
+/* The library that the file names on its first line; if `file` is a library, `file` itself. "": none, so the
+ * loader finds no driver there either. */
 void bp_driver_files_library(const char *file, char library[256]);
 
 #endif

@@ -1,13 +1,12 @@
-/* driver_start.h: the drivers' first answers, once in a process, by one thread, and with a limit of time.
+/* driver_start.h: starts the drivers once per process, in one thread and with a time limit.
  *
  * In:    BALLPARK_DRIVER_SECONDS.   Out: drivers that have started; or an error that names those which did
  * not answer. Knows: OpenCL's platforms.   Does not know: which devices there are.
  *
- * The OpenCL loader loads all drivers at the first call, and a driver looks for its devices when it is first
- * asked for them. Neither is safe where several threads come first: PoCL 3.1 tells all threads but one that
- * it has no devices, or crashes. And a driver that hangs would block every caller. So everything that
- * uses OpenCL begins with bp_drivers_start(): one thread makes the first calls, all others wait, and none
- * waits for ever. */
+ * The OpenCL loader loads all drivers at the first call, and a driver looks for its devices at the first
+ * query. Neither is thread-safe: PoCL 3.1 reports no devices to all threads but one, or crashes. And a driver
+ * that hangs would block every caller. So everything that uses OpenCL begins with bp_drivers_start(): one
+ * thread makes the first calls, all others wait, and none waits for ever. */
 #ifndef BP_OPENCL_DRIVER_START_H
 #define BP_OPENCL_DRIVER_START_H
 
@@ -19,18 +18,18 @@
  * limit. BP_ERR_USAGE: it has another value. */
 BpStatus bp_driver_seconds(double *seconds, BpError *err);
 
-/* Until all drivers have listed their devices. BP_ERR_DEVICE: some driver hangs; so it is for every later
- * call, unless it has answered by then. */
+/* Waits until all drivers have listed their devices. BP_ERR_DEVICE: some driver hangs; later calls fail too,
+ * unless it has answered by then. */
 BpStatus bp_drivers_start(BpError *err);
 
 /* The same for the program. BP_ERR_BROKEN_DEVICE: some driver hangs. BP_ERR_INTERRUPTED: stop() returned true
- * (Optional; asked all the time that this waits: long_call.h). */
+ * (Optional; polled while this waits: long_call.h). */
 BpStatus bp_drivers_start_until(bool (*stop)(void), BpError *err);
 
-/* What a driver is at, for a handler of signals: "starting" or "opening device 0 (...)"; NULL: nothing, as
- * far as this is told. Where several threads work at once it is that of the last one that began. */
+/* What a driver is doing, for a signal handler: "starting" or "opening device 0 (...)"; NULL: nothing that
+ * was recorded. With several threads, the latest record. */
 const char *bp_driver_doing(void);
-/* Tells it. `what`: stands as long as it is told; NULL: the driver has returned. */
+/* Records it. `what` must stay valid until the next record; NULL: the driver has returned. */
 void bp_driver_tell(const char *what);
 
 #endif

@@ -1,4 +1,4 @@
-/* pocl.h: what PoCL, the OpenCL driver of processors, needs from the system and does not say when it is
+/* pocl.h: requirements of PoCL, the OpenCL driver of processors, that it does not report when they are
  * missing.
  *
  * In:    the environment, the processor's name.   Out: what is missing, and the remedy, as text.
@@ -21,10 +21,10 @@ bool bp_pocl_cache_fails(char text[512]);
  * kernel; some need none. */
 bool bp_pocl_finds_linker(void);
 
-/* Whether PoCL has no working compiler for this processor. Before 3.1 it lets its compiler name the
- * processor, and where that is older than the processor, kernels may use fewer instructions than PoCL's own
- * functions: the compiler ends the process or takes all memory. `model`: what /proc/cpuinfo calls the
- * processor. */
+/* Whether PoCL has no working compiler for this processor. Before 3.1 it uses its compiler's name of the
+ * processor. If the compiler is older than the processor, kernels may use fewer instructions than PoCL's own
+ * functions: then the compiler ends the process or takes all memory. `model`: the processor's name in
+ * /proc/cpuinfo. */
 bool bp_pocl_is_too_old(const char *driver, const char *name, const char *model);
 /* The same for a device on this machine. */
 bool bp_pocl_fails_here(const BpDeviceInfo *info);

@@ -1,4 +1,4 @@
-/* pocl_probe.h: whether PoCL can compile on this machine, tried.
+/* pocl_probe.h: tests whether PoCL can compile on this machine.
  *
  * In:    a device of PoCL.   Out: that a kernel was built and has run, or an error.
  * Knows: devices, programs.   Does not know: what PoCL needs (pocl.h). */
@@ -7,7 +7,8 @@
 
 #include "base/status.h"
 
-/* Builds and runs a kernel that no cache can have. Where PoCL finds no linker this may end the process. */
+/* Builds and runs a kernel that cannot be in any cache. Where PoCL finds no linker this may end the process.
+ */
 BpStatus bp_pocl_try_kernel(const BpDeviceInfo *info, BpError *err);
 
 #endif

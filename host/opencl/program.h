@@ -1,7 +1,7 @@
-/* program.h: puts the kernel's source together for one set of choices.
+/* program.h: assembles the kernel's source for one set of choices.
  *
  * In:    which effects, settings and form.   Out: one OpenCL C source text, or a built program.
- * Knows: the files of kernels/ and their order, in one list. Does not know: scenes, buffers.
+ * Knows: the files of kernels/ and their order, in one list.   Does not know: scenes, buffers.
  *
  * Every switch is a #define in the first lines of the text, so the text alone decides what is compiled (some
  * drivers' caches ignore -D). Each file is opened by `#line 1 "file"`.
@@ -36,9 +36,9 @@ BpStatus bp_kernel_close(FILE *out, BpStatus status, char **text, BpError *err);
  */
 #define BP_PACKET_SAMPLES_PER_ITEM 512u
 /* A work-item of the pool form has this many pixel samples to trace on average, fewer where there would not
- * be BP_POOL_ITEMS_PER_UNIT work-items for each compute unit: enough that long paths are among others, few
- * enough that no group works alone for long at the end. In a model of lock-step, warps of 32 gained 1.5
- * with 16. */
+ * be BP_POOL_ITEMS_PER_UNIT work-items for each compute unit: enough to average long paths with others, few
+ * enough that no group works alone for long at the end. In a model of lock-step, warps of 32 gained 1.5 with
+ * 16. */
 #define BP_POOL_SAMPLES_PER_ITEM 16u
 #define BP_POOL_ITEMS_PER_UNIT 1024u
 /* Work-items in a work-group of the sample form, at most: they share an array of this length. */

@@ -1,4 +1,4 @@
-/* self_test.h: known answers that a device must give before it renders.
+/* self_test.h: known-answer tests that a device must pass before it renders.
  *
  * In:    an open device.   Out: nothing, or a message that names what it computes wrongly.
  * Knows: OpenCL, kernels/entry/self_test.cl.   Does not know: scenes, pictures.
@@ -16,18 +16,19 @@
 #define BP_SELF_TEST_FILES 7
 extern const char *const bp_self_test_files[BP_SELF_TEST_FILES];
 
-/* Runs the self-test. BP_ERR_DEVICE: the message names the device, its driver and the first thing that is
- * wrong, and how many more are. BP_ERR_BUILD, BP_ERR_MEMORY: it could not run. `kernel_text`: Optional, takes
- * the place of kernels/entry/self_test.cl (tests break it). */
+/* Runs the self-test. BP_ERR_DEVICE: the message names the device, its driver, the first failure, and the
+ * number of others. BP_ERR_BUILD, BP_ERR_MEMORY: it could not run. `kernel_text`: Optional, takes the place
+ * of kernels/entry/self_test.cl (tests break it). */
 BpStatus bp_self_test_run(BpDevice *device, const char *kernel_text, BpError *err);
 
 /* Runs the self-test unless this device, driver, program version and test passed before, built with the same
  * options. What passed is remembered in $XDG_CACHE_HOME/ballpark or ~/.cache/ballpark; where that cannot be
- * written, the test runs every time. A failure is never remembered. *ran tells whether it ran now; `ran`:
+ * written, the test runs every time. A failure is never remembered. *ran: whether it ran now; `ran`:
  * Optional. */
 BpStatus bp_self_test_once(BpDevice *device, bool *ran, BpError *err);
 
-/* The file that remembers this device's pass, heap, or NULL where there is no home for caches. */
+/* The file that records that this device has passed; heap. NULL: the environment names no folder for caches.
+ */
 char *bp_self_test_memory_path(const BpDevice *device);
 
 #endif
