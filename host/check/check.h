@@ -1,12 +1,12 @@
 /* check.h: renders a scene with the kernel and with the reference tracer, and compares the two.
  *
- * In:    Scene, options, a device.   Out:   the sums of both, the verdict.
+ * In:    a scene, options, a device.   Out: the sums of both, the verdict.
  * Knows: the render loop, the reference.   Does not know: the command line, files.
  *
  * The result depends on scene, samples, seed and device, not on chunks, threads or the machine's load. With a
- * limit of time, both sides proceed in rounds, each as long as all before it together, and the last round
- * that was completed in time is judged. The clock then decides how many samples there are, but not their
- * values, so the verdict's error rate holds. */
+ * time limit, both sides proceed in rounds, each as long as all before it together, and the last round that
+ * was completed in time is judged. The clock then determines the number of samples, but not their values, so
+ * the verdict's error rate holds. */
 #ifndef BP_CHECK_CHECK_H
 #define BP_CHECK_CHECK_H
 
@@ -18,7 +18,7 @@
 
 typedef struct BpCheckOptions {
     BpRenderOptions render; /* samples, depth, seed, kernel; the sampler must be the independent one */
-    double level;           /* probability of rejecting a right kernel */
+    double level;           /* probability of rejecting a correct kernel */
     double margin;          /* "agree" needs brightness shown to be equal within it; a fraction */
     double seconds;         /* limit of time, from bp_check_create() on; 0: none */
     unsigned threads;       /* of the reference; 0: one a processor */
@@ -50,7 +50,7 @@ struct BpDevice;
 BpStatus bp_check_create(const BpScene *scene, const BpCheckOptions *options, struct BpDevice *device,
                          BpCheck **check, BpError *err);
 /* Works for about 0.3 s (on a huge scene: one sample of every pixel). `progress`: Optional.
- * BP_ERR_INCONCLUSIVE: time was up before the first round was over. */
+ * BP_ERR_INCONCLUSIVE: the time limit was reached before the first round was complete. */
 BpStatus bp_check_step(BpCheck *check, BpCheckProgress *progress, BpError *err);
 /* After the last step; valid while the check lives. BP_ERR_USAGE before. */
 BpStatus bp_check_result(const BpCheck *check, const BpCheckResult **result, BpError *err);
@@ -64,8 +64,8 @@ BpStatus bp_check_render_kernel(BpRender *render, BpSums *sums, uint64_t *trunca
 
 /* Three pictures side by side, scaled up to a visible size: kernel, reference, and their difference in each
  * pixel in standard errors, blue where the kernel is darker, red where it is brighter, white at 0, full
- * colour from BP_CHECK_MAP_MOST on. A legend stands below. Encoded so that `transfer` shows them as meant.
- * The caller clears the picture. */
+ * colour from BP_CHECK_MAP_MOST on. A legend stands below. Colours are encoded for display through
+ * `transfer`. The caller clears the picture. */
 BpStatus bp_check_map(const BpCheckResult *result, BpTransfer transfer, BpPicture *picture, BpError *err);
 
 #endif

@@ -1,43 +1,44 @@
-/* verdict.h: do two sets of samples of one picture come from the same light?
+/* verdict.h: decides whether two sets of samples of a picture have the same expectation.
  *
  * In:    power sums of two renderers (reference/sums.h), drawn independently of each other.
- * Out:   agree, disagree or inconclusive, at a stated error rate; and how wrong the first could still be.
+ * Out:   agree, disagree or inconclusive, at a stated error rate; and how large an error could have been
+ * missed.
  * Knows: statistics.   Does not know: scenes, devices, who rendered.
  *
- * What is tested: the mean of each channel over the whole picture and over up to 8 x 8 blocks, and the same
- * for the mean of squares, which sees a wrong spread. Picture and blocks get 45 % of the level each, their
+ * Tested are the mean of each channel over the whole picture and over up to 8 x 8 blocks, and likewise the
+ * mean of squares, which detects a wrong spread. Picture and blocks get 45 % of the level each, their
  * squares, which mostly repeat the means, 5 % each; every family divides its part among its tests
- * (Bonferroni), so that a right kernel is rejected with at most the probability `level`. Small errors are
- * seen by the whole picture, local ones by the blocks; single pixels are not tested, since thousands of tests
- * of one pixel each are blind to an error of a hundredth of their noise.
+ * (Bonferroni), so that a correct kernel is rejected with probability `level` at most. The whole picture
+ * reveals small errors, the blocks local ones; single pixels are not tested, since thousands of tests of one
+ * pixel each cannot detect an error of a hundredth of their noise.
  *
  * A difference D of means with variance V counts as z = max(0, |D| - e) / sqrt V, where e is what single
- * precision may cost (BP_VERDICT_ROUNDING). Where one side has fewer than 20 samples that are not black,
- * means follow no normal law: the numbers of such samples are compared instead, exactly (binomial).
+ * precision may cost (BP_VERDICT_ROUNDING). If one side has fewer than 20 samples that are not black, means
+ * are not normally distributed: the numbers of such samples are compared instead, exactly (binomial).
  *
  * A difference that is not found does not prove equality: samples may have been too few to find it. So a
- * verdict says "agree" only where nothing is rejected and the brightness of the picture is shown to be equal
+ * verdict is "agree" only if nothing is rejected and the brightness of the picture is shown to be equal
  * within a margin, in luminance and in each channel that has light: both ends of the 95 % interval of each
  * ratio lie within 1 -+ margin (two one-sided tests, Schuirmann 1987, at 2.5 % each; all must pass, so none
- * needs a smaller level). Otherwise it is inconclusive. A black picture shows nothing, so it is too.
+ * needs a smaller level). Otherwise it is inconclusive, as for a black picture, which shows nothing.
  *
- * Where one side sends rays to lamps and the other finds them by chance, spreads differ and so do numbers of
- * lit samples, though means do not: the means get the whole level, with variances three of their standard
- * errors larger than estimated, and what has too few lit samples is not compared. */
+ * If one side samples lights and the other finds them by chance, means are equal, but spreads and numbers of
+ * lit samples are not: the means get the whole level, with variances three of their standard errors larger
+ * than estimated, and means of too few lit samples are not compared. */
 #ifndef BP_CHECK_VERDICT_H
 #define BP_CHECK_VERDICT_H
 
 #include "reference/sums.h"
 
-#define BP_VERDICT_LEVEL 1e-4    /* default: one right kernel in ten thousand is rejected */
+#define BP_VERDICT_LEVEL 1e-4    /* default: one correct kernel in ten thousand is rejected */
 #define BP_VERDICT_MARGIN 0.005  /* default: "agree" needs brightness shown to be equal within 0.5 % */
 #define BP_VERDICT_POWER 0.9     /* of the smallest bias that would have been found */
 #define BP_VERDICT_ROUNDING 2e-5 /* relative; of squares twice that */
 #define BP_VERDICT_BLOCKS_SIDE 8u
-#define BP_VERDICT_PICTURE_OFF 1e-6 /* what adding the samples up may cost a pixel; see picture_off */
+#define BP_VERDICT_PICTURE_OFF 1e-6 /* error of a pixel that summation may cause; see picture_off */
 
 typedef enum BpConclusion {
-    BP_INCONCLUSIVE, /* nothing is rejected, and too little is shown */
+    BP_INCONCLUSIVE, /* nothing is rejected, but equality is not shown */
     BP_AGREE,
     BP_DISAGREE
 } BpConclusion;
@@ -75,7 +76,7 @@ typedef struct BpVerdict {
     uint64_t samples;                           /* valid ones, of both sides together */
     uint64_t invalid_kernel, invalid_reference; /* any is a disagreement */
     double mean_kernel[BP_SUMS_CHANNELS], mean_reference[BP_SUMS_CHANNELS];
-    double segments_kernel, segments_reference; /* mean number of ray segments of a path; shown, not judged */
+    double segments_kernel, segments_reference; /* mean ray segments of a path; not judged */
     /* Brightness (luminance) of kernel over reference, with its 95 % interval; NaN for a black picture. */
     double ratio, ratio_low, ratio_high;
     /* The smallest margin within which brightness is shown to be equal, in luminance and in each channel that
@@ -96,11 +97,11 @@ typedef struct BpVerdict {
 BpStatus bp_verdict(const BpSums *kernel, const BpSums *reference, double level, double margin,
                     BpVerdict *verdict, BpError *err);
 
-/* Takes `picture_off` into a verdict that bp_verdict() gave. */
+/* Adds `picture_off` to a verdict of bp_verdict(). */
 void bp_verdict_add_picture(BpVerdict *verdict, double picture_off);
 
-/* Samples per pixel that are likely to settle an inconclusive verdict which `samples` per pixel led to; 0
- * where no number is likely to, as nothing is seen. */
+/* Samples per pixel that are likely to settle a verdict that was inconclusive with `samples` per pixel; 0 if
+ * no number is, since the picture is black. */
 uint64_t bp_verdict_samples_needed(const BpVerdict *verdict, uint64_t samples);
 
 /* Signed z of one pixel's luminance: for maps, not for judging. */

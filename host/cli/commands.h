@@ -1,7 +1,7 @@
 /* commands.h: the commands of the program.
  *
  * In:    a checked command line.   Out: files, text on standard output, messages on standard error.
- * Knows: which function carries out each command.   Does not know: how the command line was written.
+ * Knows: which function carries out each command.   Does not know: how the command line was parsed.
  *
  * A command returns its failure in `err` and prints no error itself: main does, and exits with the code that
  * belongs to the status. Results (a table, a document) go to standard output; progress and notes go to

@@ -1,4 +1,5 @@
-/* explain_chains.h: the light that a path's first matte point gets through balls of glass and off mirrors.
+/* explain_chains.h: explains the light that the first matte point of a path receives through balls of glass
+ * and off mirrors.
  *
  * In:    a scene and the log of a path.   Out: the ways of that light, for a person or as JSON.
  * Knows: which ways are sampled, how they are found (study/chains.h).   Does not know: OpenCL. */
@@ -13,14 +14,13 @@
 typedef struct BpChainEntry BpChainEntry; /* a chain and its ways */
 
 typedef struct BpChainLight {
-    bool known;  /* the path has a matte point, and the scene ways that can be sampled */
+    bool known;  /* the path has a matte point, and the scene has ways that can be sampled */
     size_t step; /* which of the path's meets the matte point */
     BpChainEntry *entries;
     size_t count;
 } BpChainLight;
 
-/* `max_depth`: of the path; what it would cut is left out. BP_ERR_MEMORY. Free with bp_chain_light_clear().
- */
+/* `max_depth`: of the path; longer ways are left out. BP_ERR_MEMORY. Free with bp_chain_light_clear(). */
 BpStatus bp_chain_light_find(const BpScene *scene, const BpPathLog *path, uint32_t max_depth,
                              BpChainLight *light, BpError *err);
 void bp_chain_light_clear(BpChainLight *light);

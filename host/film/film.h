@@ -2,8 +2,8 @@
  *
  * In:    fixed-point replicate sums, as the kernel `accumulate` writes them.
  * Out:   means, standard errors, NRMSE; the exact sum of two films.
- * Knows: arithmetic, and of a scene how bright it can be and what distinguishes it from others.   Does not
- * know: OpenCL, how films are stored (film_file.h).
+ * Knows: arithmetic, and of a scene how bright it can be and what distinguishes it from others.
+ * Does not know: OpenCL, how films are stored (film_file.h).
  *
  * Sample s of a pixel belongs to replicate s mod K. Sums are integers, so they do not depend on the
  * order of addition and cannot drift. A channel x of a sample is y = x * 2^scale_log2 steps, at most 2^38.

@@ -1,6 +1,7 @@
 /* film_file.h: films as files (.bpa): one line of JSON, then packed numbers.
  *
- * In and out: BpFilm.   Knows: which numbers there are, and what they may be.   Does not know: how they are
+ * In and out: BpFilm.
+ * Knows: which numbers there are, and what they may be.   Does not know: how they are
  * packed (film_stream.h), how the sums were made.
  *
  * Layout (docs/FILES.md has it byte by byte): a JSON object on one line ended by a

@@ -1,4 +1,4 @@
-/* depth_cues.h: lines where the depth jumps, and fading by depth, drawn over a picture.
+/* depth_cues.h: draws outlines where the depth jumps, and fading by depth, over a picture.
  *
  * In:    a picture with depth and normals.   Out: the picture, changed; its errors stay those of the render.
  * Knows: pixels.   Does not know: scenes, where the depth comes from. */
@@ -15,7 +15,7 @@ typedef struct BpDepthCues {
     double bottom[3], top[3];
 } BpDepthCues;
 
-/* Draws over rgb and alpha. Lines are black, lie around what is nearer, and fade with it. BP_ERR_USAGE: the
+/* Draws over rgb and alpha. Lines are black, surround the nearer surface, and fade with it. BP_ERR_USAGE: the
  * picture has no depth; BP_ERR_MEMORY: it is unchanged. */
 BpStatus bp_depth_cues_draw(BpPicture *picture, const BpDepthCues *cues, BpError *err);
 

@@ -1,4 +1,4 @@
-/* exr_layers.h: which channels of an OpenEXR file are the image.
+/* exr_layers.h: chooses the channels of an OpenEXR file that are the image.
  *
  * In:    an open file.   Out: a part and a layer that has R, G and B, or Y alone.
  * Knows: parts, names of channels and layers.   Does not know: what pixels hold. */
@@ -19,12 +19,12 @@ typedef struct BpExrLayer {
 } BpExrLayer;
 
 /* The first part that has the channels without a layer's name, else the only layer that has them, else the
- * only one called "Combined", "beauty" or "rgba". BP_ERR_SCENE names the layers where several could be meant,
- * and refuses whole numbers, chroma and channels with fewer samples than pixels. */
+ * only one called "Combined", "beauty" or "rgba". BP_ERR_SCENE: several layers qualify, which the message
+ * names, or channels are integers, chroma or subsampled. */
 BpStatus bp_exr_layer_choose(const BpImageInput *input, exr_const_context_t exr, BpExrLayer *layer,
                              BpError *err);
 
-/* The place of a channel among a texel's numbers: 0 to 2; -1 if it is not the layer's. */
+/* The index of a channel within a texel: 0 to 2; -1 if it is not part of the layer. */
 int bp_exr_channel_place(const BpExrLayer *layer, const char *channel);
 
 #endif

@@ -1,4 +1,4 @@
-/* image.h: pictures to files.
+/* image.h: writes pictures to files.
  *
  * In:    linear radiance (BpPicture).   Out: PNG, PPM (P6, P3), PFM, EXR.
  * Knows: file formats, transfer curves.   Does not know: scenes, OpenCL, how the picture was made. */
@@ -39,7 +39,7 @@ uint16_t bp_transfer_word(double linear, BpTransfer transfer);
 /* Multiplies the radiance by 2 to the power of `stops`, and nothing else; NaN stays NaN. */
 void bp_picture_expose(BpPicture *picture, double stops);
 
-/* bp_picture_write_stream with more than pixels. */
+/* bp_picture_write_stream() with metadata. */
 BpStatus bp_picture_write_extra(const BpPicture *picture, FILE *out, BpFormat format, BpTransfer transfer,
                                 const BpImageExtra *extra, BpError *err);
 
@@ -56,8 +56,7 @@ BpStatus bp_exr_write(const BpPicture *picture, FILE *out, const BpImageExtra *e
 
 /* 8-bit RGB, 3 bytes per pixel, top row first, as an sRGB PNG: for pictures that are drawn, not rendered. */
 BpStatus bp_png_write_bytes(const uint8_t *rgb, uint32_t width, uint32_t height, FILE *out, BpError *err);
-/* Bytes, such as those of a PNG, in the letters that documents and terminals can hold (RFC 4648, section 4).
- */
+/* Prints bytes, such as those of a PNG, in base64 (RFC 4648, section 4). */
 void bp_base64_print(const void *bytes, size_t size, FILE *out);
 
 /* Writes to an open stream; BP_FORMAT_BPA is refused. */

@@ -1,10 +1,10 @@
-/* texels.h: an image that a scene has read: a grid of colours, linear.
+/* texels.h: an image of a scene: a grid of linear colours.
  *
- * In:    what a file held.   Out: texels that are colours or radiances, their bound, a hash of all.
+ * In:    the contents of a file.   Out: texels that are colours or radiances, their bound, a hash of all.
  * Knows: what a texel may be.   Does not know: how files are read, how an image is looked up.
  *
- * A value below 0, as resampling makes it beside bright texels, counts as 0, since nothing emits or reflects
- * less; the image's notes count them.
+ * A negative value, which resampling creates beside bright texels, becomes 0, since nothing emits or reflects
+ * less; the image's notes have their number.
  *
  * Texels are floats, since files hold no more: pack and the reference tracer read the same numbers. */
 #ifndef BP_IMAGE_TEXELS_H
@@ -19,13 +19,13 @@
 #define BP_IMAGE_TEXELS_MAX ((uint64_t)1 << 27) /* of all images of a scene together: 16384 by 8192 */
 #define BP_IMAGES_MAX 1024u
 #define BP_IMAGE_SCALE_MAX 1.0e12
-#define BP_RADIANCE_MAX 1.0e12 /* of a texel, and of whatever else shines */
+#define BP_RADIANCE_MAX 1.0e12 /* of a texel, and of any other light */
 
 enum { BP_IMAGE_NOTES_SIZE = 512 };
 
 /* The encoding of light in the numbers of a file. */
 typedef enum BpEncoding {
-    BP_ENCODING_OF_FORMAT, /* as its format has it: PNG as sRGB, others linear */
+    BP_ENCODING_OF_FORMAT, /* the format's own: PNG is sRGB, others are linear */
     BP_ENCODING_SRGB,
     BP_ENCODING_LINEAR
 } BpEncoding;
@@ -41,7 +41,7 @@ typedef struct BpImage {
     double spread;   /* the standard deviation of the luminance over that sphere, over its mean */
     bool is_gray;    /* red, green and blue are equal everywhere */
     uint64_t hash;
-    char notes[BP_IMAGE_NOTES_SIZE]; /* what was left out, changed or guessed, in readable words; "" */
+    char notes[BP_IMAGE_NOTES_SIZE]; /* what was ignored, changed or guessed, for people; "" */
 } BpImage;
 
 /* Black texels. BP_ERR_MEMORY. */

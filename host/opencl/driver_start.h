@@ -1,7 +1,8 @@
 /* driver_start.h: starts the drivers once per process, in one thread and with a time limit.
  *
  * In:    BALLPARK_DRIVER_SECONDS.   Out: drivers that have started; or an error that names those which did
- * not answer. Knows: OpenCL's platforms.   Does not know: which devices there are.
+ * not answer.
+ * Knows: OpenCL's platforms.   Does not know: which devices there are.
  *
  * The OpenCL loader loads all drivers at the first call, and a driver looks for its devices at the first
  * query. Neither is thread-safe: PoCL 3.1 reports no devices to all threads but one, or crashes. And a driver

@@ -1,4 +1,4 @@
-/* chains.h: the ways by which a lamp's light reaches a matte point through one ball of glass or off one
+/* chains.h: finds the ways by which a lamp's light reaches a matte point through one ball of glass or off one
  * mirror.
  *
  * In:    a scene in which nothing moves, without media; a point; a sphere, a lamp and how light passes the
@@ -8,7 +8,7 @@
  *
  * The kernel solves for one angle with a proof of how many solutions there are (kernels/light/focusers.cl).
  * Here rays are traced through the sphere at many angles; where one passes the lamp on the left and the next
- * on the right, the angle between is sought by false position. */
+ * on the right, the angle between them is found by false position. */
 #ifndef BP_STUDY_CHAINS_H
 #define BP_STUDY_CHAINS_H
 
@@ -32,9 +32,9 @@ typedef struct BpChainWay {
     double direction[3]; /* from the point, a unit vector */
     double at[3];        /* where it meets the sphere */
     double degrees;      /* between it and the sphere's normal there */
-    bool to_middle;      /* these lead to the middle of the lamp, else to some part of it */
+    bool to_middle;      /* it leads to the middle of the lamp, else to some part of it */
     double brings[3];    /* radiance that the point would send on if it were white; 0 to 1 of each colour */
-    double stopped;      /* the share of what the way would bring that other spheres keep from it */
+    double stopped;      /* the share of its light that other spheres block */
     uint32_t by;         /* where that is not 0: such a sphere */
 } BpChainWay;
 
@@ -42,7 +42,7 @@ typedef struct BpChainWay {
  * the angle grows, and one from right to left. */
 #define BP_CHAIN_WAYS_MAX 4
 
-/* The ways of one chain, those that bring most first; returns how many there are. BP_ERR_MEMORY. */
+/* The ways of one chain, the brightest first; *count is their number. BP_ERR_MEMORY. */
 BpStatus bp_chain_ways(const BpScene *scene, const BpChainPoint *point, const BpChain *chain,
                        BpChainWay ways[BP_CHAIN_WAYS_MAX], size_t *count, BpError *err);
 

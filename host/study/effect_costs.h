@@ -1,4 +1,4 @@
-/* effect_costs.h: what each effect costs on a device, measured.
+/* effect_costs.h: measures the cost of each effect on a device.
  *
  * In:    a scene, options, a device.   Out: for each kernel that could render it, its time as a ratio to the
  *        specialised one's, with a spread; build times; registers.
@@ -6,8 +6,8 @@
  *
  * Time is what the device spends on tracing: on a CPU the processor time of all cores together, on others by
  * their own clock. All kernels trace the same samples of the same paths, in rounds: each round runs every
- * kernel once, so that what disturbs the computer disturbs all alike. A ratio is formed within a round; the
- * median over rounds counts. */
+ * kernel once, so that disturbances affect all alike. Ratios are formed within a round; the result is the
+ * median over rounds. */
 #ifndef BP_STUDY_EFFECT_COSTS_H
 #define BP_STUDY_EFFECT_COSTS_H
 
@@ -21,13 +21,13 @@ typedef struct BpKernelCost {
     int forced;                /* the effect that is forced in, or -1 */
     uint32_t bits;             /* what is in it */
     double ratio;              /* median time over the specialised kernel's */
-    double low, high;          /* the middle half of the rounds lies between */
+    double low, high;          /* the quartiles of the rounds */
     double samples_per_second; /* of device time (on a CPU: of one core), median over rounds */
     uint64_t registers;        /* of the trace kernel, from the build log; 0: not in it */
     uint64_t private_bytes;    /* 0: not reported by the driver */
     /* From opening the device to the first sample, without the scene's tree, by the wall clock and in
-     * processor time of this process; cold: nothing is cached, warm: the driver has kept the kernel. NaN: not
-     * measured. */
+     * processor time of this process; cold: nothing is cached; warm: the driver has cached the kernel. NaN:
+     * not measured. */
     double cold_seconds, cold_processor_seconds, warm_seconds, warm_processor_seconds;
 } BpKernelCost;
 
@@ -41,7 +41,7 @@ typedef struct BpCosts {
     BpKernelCost kernels[BP_KERNELS_MAX]; /* [0]: specialised; the last: general */
 } BpCosts;
 
-/* Called before each piece of work with a line that describes it; `context` is handed through. */
+/* Called before each piece of work with a line that describes it; `context` is passed through. */
 typedef void BpCostProgress(const char *what, void *context);
 
 typedef struct BpCostPlan {
@@ -54,7 +54,7 @@ typedef struct BpCostPlan {
 } BpCostPlan;
 
 /* Costs on `device` of the kernels that could render `scene`; options->samples_per_pixel, first_sample and
- * all_effects do not count. Takes about kernels * rounds * round_seconds, plus the builds. */
+ * all_effects are ignored. Takes about kernels * rounds * round_seconds, plus the builds. */
 BpStatus bp_costs_measure(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *device,
                           const BpCostPlan *plan, BpCosts *costs, BpError *err);
 

@@ -12,8 +12,8 @@
 void bp_study_errors(const BpPicture *x, const BpPicture *r1, const BpPicture *r2, double brightness,
                      BpStudyPoint *point);
 
-/* Differences of two films of one size and number of replicates, pixel by pixel and replicate by
- * replicate: of brightness, and the mean squared systematic change of a pixel's luminance, both relative to
+/* Differences of two films of equal size and number of replicates, pixel by pixel and replicate by replicate:
+ * that of brightness, and the mean squared systematic change of a pixel's luminance, both relative to
  * `brightness`. BP_ERR_USAGE: sizes or replicates differ, or there are fewer than two replicates. */
 BpStatus bp_study_paired(const BpFilm *x, const BpFilm *base, double brightness, BpStudyEstimate *bias,
                          BpStudyEstimate *square, BpError *err);

@@ -3,7 +3,7 @@
  * In:    the scene with exact Fresnel, a device.   Out: two pictures, as good as the time allows.
  * Knows: the kernel in double, the reference tracer.   Does not know: what is compared with them.
  *
- * Both grow in turns; their samples are doubled as long as the doubling fits. */
+ * Both are rendered in turns; their samples are doubled as long as there is time for it. */
 #ifndef BP_STUDY_REFERENCES_H
 #define BP_STUDY_REFERENCES_H
 
@@ -21,8 +21,8 @@ typedef struct BpReferences {
     BpPicture pictures[2]; /* once finished */
 } BpReferences;
 
-/* Opens them; `references` zeroed before. Of `base`, only `force` and the seed count; their
- * seeds follow from it. Clear also on failure. */
+/* Opens them; zero `references` before. Of `base`, only `force` and the seed are used, from which their seeds
+ * follow. Clear also on failure. */
 BpStatus bp_references_open(BpReferences *references, const BpScene *scene, const BpRenderOptions *base,
                             const BpDeviceInfo *device, BpError *err);
 /* About 0.2 s of work (a step of the tracer: one sample of every pixel). *finished: `seconds` from opening

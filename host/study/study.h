@@ -1,16 +1,16 @@
-/* study.h: what accuracy costs on one scene and device: configurations, their errors, their seconds, and the
+/* study.h: studies the cost of accuracy on one scene and device: configurations, their errors and times,
  * advice.
  *
  * In:    a scene, the options that a render of it would have, a device, a time budget.
  * Out:   BpStudyResult; as a table, JSON, CSV or a page.
- * Knows: the render loop, the reference tracer, the command `ballpark render` that its advice names.
+ * Knows: the render loop, the reference tracer, the options of `ballpark render` for its advice.
  * Does not know: how options are read.
  *
  * The truth is the scene with exact Fresnel and depth 1000, in double with strict arithmetic; for a device
  * without double, the reference tracer's. It is rendered twice with seeds of their own, r1 and r2, and the
  * mean squared error of a picture x is the mean of (x - r1)(x - r2): free of the references' noise.
  *
- * Every configuration is rendered at the same sample counts, taking turns. What one configuration changes is
+ * Every configuration is rendered at the same sample counts, taking turns. The effect of a configuration is
  * measured by paired differences: the same seed gives the same random numbers, whatever the precision, depth
  * or Fresnel, so most noise cancels. */
 #ifndef BP_STUDY_STUDY_H
@@ -39,7 +39,7 @@ typedef enum BpStudyFresnel {
 typedef struct BpStudyConfiguration {
     const char *axis;  /* "base", "truth", "sampler", "depth", ...; static */
     const char *name;  /* "depth 10"; static */
-    char command[128]; /* options of `ballpark render` that give it; "": none are needed */
+    char command[128]; /* options of `ballpark render` that select it; "": none are needed */
     BpRenderOptions options;
     BpStudyFresnel fresnel; /* SCENE: as in the scene; else a change of the scene */
 } BpStudyConfiguration;
@@ -62,15 +62,15 @@ typedef struct BpStudyCrop {
 typedef struct BpStudyPoint {
     uint64_t samples; /* a pixel */
     /* wall: as lived through; device: kernels by the device's clock; cpu: of all threads of this process.
-     * seconds: wall, or on a CPU device cpu / cores if that is less; without what disturbed single rounds
-     * (timing.h), so that other work on the machine changes little. */
+     * seconds: wall, or on a CPU device cpu / cores if that is less; without disturbances of single rounds
+     * (timing.h), so that other load on the machine changes little. */
     double seconds, wall_seconds, device_seconds, cpu_seconds;
     double claimed;        /* NRMSE estimated from the replicates: noise alone */
     double mse, mse_error; /* against the truth, noise and bias; its standard error. It may be negative. */
     double nrmse;          /* its root; NaN where the references are too noisy */
     double
         rel_mse; /* mean of (x - r1)(x - r2) / (r + 0.01)^2 over pixels and channels (pbrt's relative MSE) */
-    bool front;  /* no other point is both quicker and better */
+    bool front;  /* no other point is both faster and better */
     BpStudyCrop crop;
 } BpStudyPoint;
 
@@ -115,7 +115,8 @@ typedef struct BpStudyResult {
     BpStudyAdvice advice[BP_STUDY_TARGETS];
 } BpStudyResult;
 
-/* A study is made and run by what ballpark.h declares. Its result, once it has finished; owned by `study`. */
+/* A study is created and run by functions of ballpark.h. Its result, once it has finished; owned by `study`.
+ */
 const BpStudyResult *bp_study_result(const BpStudy *study);
 bool bp_study_has_finished(const BpStudy *study);
 
@@ -125,14 +126,14 @@ const char *bp_study_fresnel_name(BpStudyFresnel fresnel);
 /* The relative uncertainty of a ratio of two times: half the widest 95 % interval of time_ratio. NaN where
  * none is known. */
 double bp_study_time_scatter(const BpStudyResult *result);
-/* Why a study was too short to rely on its advice, and what to do; "" where it was long enough. Returns
- * `text`. */
+/* Why a study was too short to rely on its advice, with a remedy; "" if it was long enough. Returns `text`.
+ */
 const char *bp_study_shortness_text(const BpStudyResult *result, char *text, size_t size);
-/* One line: what to do for this error and what it costs; no line end. */
+/* One line without a newline: the configuration for this error and its time. */
 const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvice *advice, char *text,
                                  size_t size);
-/* The table as text, with the marks of base/wrap.h; CSV; the page. False when the stream failed or memory
- * ran out; see errno. */
+/* The table as text, with the marks of base/wrap.h; CSV; the page. False if the stream failed or memory ran
+ * out; see errno. */
 bool bp_study_print(const BpStudyResult *result, FILE *out);
 bool bp_study_print_csv(const BpStudyResult *result, FILE *out);
 bool bp_study_print_page(const BpStudyResult *result, FILE *out);

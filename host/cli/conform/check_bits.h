@@ -1,8 +1,8 @@
-/* check_bits.h: `ballpark check --bits`: a device's pictures against recorded ones, exactly.
+/* check_bits.h: `ballpark check --bits`: compares a device's pictures with recorded ones, exactly.
  *
  * In:    the recorded pictures (host/check/bits.json), a device.   Out: an entry for each picture and form.
  * Knows: recorded pictures, agreement scenes, items of work (device_items.h).
- * Does not know: the command line, what is written of it.
+ * Does not know: the command line, how results are written.
  *
  * A recorded picture is {"scene", "width", "samples_per_pixel", "seed", "precision", "refinement", "hash",
  * "radiance"} (bits.h). Each is rendered in every form that must give the same picture: by packets and one
@@ -27,7 +27,7 @@ typedef struct BpBitsRun {
     const BpSuite *suite; /* its scenes get other widths */
     const BpDeviceInfo *device;
     double seconds;      /* 0: no limit */
-    BpKernelForm kernel; /* BP_KERNEL_AUTO: all that the device uses */
+    BpKernelForm kernel; /* BP_KERNEL_AUTO: every form that the device uses */
     bool one_precision;  /* only `precision` */
     BpPrecision precision;
     bool quiet;
@@ -41,7 +41,7 @@ BpStatus bp_check_bits_run(const BpBitsRun *run, json_t **entries, BpError *err)
 /* "bubble, packet, tree, single (refined in float)"; returns `text`. */
 const char *bp_check_bits_label(const json_t *entry, char *text, size_t size);
 
-/* A line for each entry that differs, fails or is skipped for a reason, the counts, and what to do. */
+/* Prints a line for each entry that differs, fails or is skipped for a reason, the counts, and advice. */
 void bp_check_bits_print(const json_t *entries, bool quiet, FILE *out);
 
 #endif

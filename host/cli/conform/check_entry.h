@@ -1,11 +1,11 @@
-/* check_entry.h: what a check says of one scene on one device, as an object of a JSON document.
+/* check_entry.h: the result of a check of one scene on one device, as a JSON object.
  *
- * In:    a check's result, or why there is none.   Out: the object.
+ * In:    a check's result, or the reason why there is none.   Out: the object.
  * Knows: verdicts, JSON.   Does not know: files, the terminal, how checks are run.
  *
  * Every entry has "device", "verdict" ("agree", "disagree", "inconclusive", "failed", "skipped"), "agree"
  * (true for the first alone), and "reason", a sentence, unless it agrees. Table, JUnit file and comparison
- * are made from these entries, so all of them say the same. */
+ * are all made from these entries. */
 #ifndef BP_CLI_CONFORM_CHECK_ENTRY_H
 #define BP_CLI_CONFORM_CHECK_ENTRY_H
 
@@ -25,8 +25,8 @@ json_t *bp_check_device_json(const BpDeviceInfo *device);
 const char *bp_check_text(const json_t *object, const char *key);
 const char *bp_check_device_text(const json_t *entry, const char *key);
 
-/* The members of a scene's object that say whether its lights were sampled, and whether by way of balls of
- * glass and mirrors too: "on" or "off". */
+/* Members of a scene's object, "on" or "off": whether its lights were sampled, and whether also by way of
+ * balls of glass and mirrors. */
 #define BP_CHECK_SAMPLING "light_sampling"
 #define BP_CHECK_CAUSTICS "caustics"
 enum { BP_CHECK_LABEL_SIZE = 4200 };
@@ -37,8 +37,8 @@ const char *bp_check_label(const json_t *scene, char *text, size_t size);
 /* "NAME (PLATFORM, driver VERSION)", escaped for display, with a 0; returns `text`. */
 const char *bp_check_device_title(const json_t *entry, char *text, size_t size);
 
-/* The verdict on several entries: "disagree" before "failed" before "inconclusive" before "agree"; where
- * there is none, "inconclusive", as nothing passes without evidence. What was skipped does not count. */
+/* The verdict on several entries: "disagree" before "failed" before "inconclusive" before "agree"; without
+ * any, "inconclusive", as nothing passes without evidence. Skipped entries do not count. */
 typedef struct BpCheckCounts {
     unsigned agree, disagree, inconclusive, failed, skipped;
 } BpCheckCounts;

@@ -3,8 +3,8 @@
  * In:    the scenes of a document (check_report.h), broken drivers.   Out: an array of suites.
  * Knows: entries.   Does not know: XML, files.
  *
- * A device is a suite, a scene a case. What is inconclusive is a failure: nothing passes without evidence. A
- * driver that cannot list its devices is a suite with one case, an error. */
+ * A device is a suite, a scene a case. An inconclusive result is a failure: nothing passes without evidence.
+ * A driver that cannot list its devices is a suite with one case, an error. */
 #ifndef BP_CLI_CONFORM_CHECK_JUNIT_H
 #define BP_CLI_CONFORM_CHECK_JUNIT_H
 

@@ -1,7 +1,7 @@
 /* check_run.h: checks scenes on one device, in a process of its own.
  *
  * In:    scenes and options, a device, a limit of time.   Out: an entry (check_entry.h) for each scene.
- * Knows: checks, items of work (device_items.h).   Does not know: what is reported of it, exit codes. */
+ * Knows: checks, items of work (device_items.h).   Does not know: how results are reported, exit codes. */
 #ifndef BP_CLI_CONFORM_CHECK_RUN_H
 #define BP_CLI_CONFORM_CHECK_RUN_H
 
@@ -19,11 +19,11 @@ typedef struct BpCheckRun {
     const BpCheckItem *items;
     size_t count;
     const BpDeviceInfo *device;
-    double seconds;  /* for all of them: each gets its share of what is left; 0: no limit */
+    double seconds;  /* for all of them: each gets its share of the time left; 0: no limit */
     const char *map; /* Optional. Picture file; of one item alone. */
     BpFormat map_format;
     bool quiet;
-    const BpCommandLine *line; /* says how the picture is written */
+    const BpCommandLine *line; /* determines how the picture is written */
 } BpCheckRun;
 
 /* Fills an outcome for each item: its result is {"entry", "text": the verdict as text}. An item without a

@@ -1,6 +1,7 @@
-/* item_device.h: one device for all items of work that a child has (device_items.h).
+/* item_device.h: one device for all items of work of a child process (device_items.h).
  *
- * In:    the device, its threads.   Out: the device, open: what one item has built, the next need not build.
+ * In:    the device, its threads.   Out: the open device, on which later items reuse what earlier ones have
+ * built.
  * Knows: devices.   Does not know: what the work is. */
 #ifndef BP_CLI_CONFORM_ITEM_DEVICE_H
 #define BP_CLI_CONFORM_ITEM_DEVICE_H
@@ -15,8 +16,8 @@ typedef struct BpItemDevice {
 
 /* Before an item: opens it if it is not open. */
 BpStatus bp_item_device_open(BpItemDevice *device, BpError *err);
-/* After an item: closes it if that failed, since the device may be why. Otherwise the child's end closes it.
- */
+/* After an item: closes the device if the item failed, since the device may be the cause. Otherwise it is
+ * closed when the child ends. */
 void bp_item_device_done(BpItemDevice *device, BpStatus status);
 
 #endif

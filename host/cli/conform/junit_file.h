@@ -13,7 +13,7 @@
 
 #include <jansson.h>
 
-/* Writes the array `suites`, and releases it; NULL is memory that ran out. "-": standard output. */
+/* Writes the array `suites`, and releases it; NULL: out of memory. "-": standard output. */
 BpStatus bp_junit_write(const BpCommandLine *line, json_t *suites, const char *path, BpError *err);
 
 #endif

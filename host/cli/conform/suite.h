@@ -1,9 +1,9 @@
-/* suite.h: the agreement scenes, small ones of one effect each, that `ballpark check --suite` goes through.
+/* suite.h: the agreement scenes of `ballpark check --suite`, small ones of one effect each.
  *
  * In:    the files of tests/agree/scenes, which the program holds.   Out: scenes.
  * Knows: how the files are embedded.   Does not know: how scenes are checked.
  *
- * They are embedded, so that an installed program has those that it was tested with. */
+ * They are embedded, so that an installed program has the scenes that it was tested with. */
 #ifndef BP_CLI_CONFORM_SUITE_H
 #define BP_CLI_CONFORM_SUITE_H
 

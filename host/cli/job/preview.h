@@ -1,7 +1,8 @@
-/* preview.h: the picture while it is rendered.
+/* preview.h: shows the picture while it is rendered.
  *
- * In:    the command line, a render between two steps.   Out: the result's file, anew; a drawing to look at.
- * Knows: --preview, --show, when it is time.   Does not know: how pictures are written and drawn. */
+ * In:    the command line, a render between two steps.   Out: the rewritten result file; a drawing in the
+ * terminal.
+ * Knows: --preview, --show, when a preview is due.   Does not know: how pictures are written and drawn. */
 #ifndef BP_CLI_JOB_PREVIEW_H
 #define BP_CLI_JOB_PREVIEW_H
 
@@ -19,16 +20,16 @@ typedef struct BpPreview {
     BpTerminalPicture terminal;
 } BpPreview;
 
-/* BP_ERR_USAGE: there is no file to rewrite, or no terminal to draw in. `scene` and `file` outlive the
- * preview. `shared`: Optional. The ranks that share the picture, of which one writes and draws. */
+/* BP_ERR_USAGE: no file to rewrite, or no terminal to draw in. `scene` and `file` must outlive the preview.
+ * `shared`: Optional. The ranks that share the picture, one of which writes and draws. */
 BpStatus bp_preview_choose(const BpCommandLine *line, const BpComm *shared, const BpScene *scene,
                            const BpResultFile *file, BpPreview *preview, BpError *err);
 
-/* Whether it is time, by bp_clock_seconds(); on the rank that writes and draws. */
+/* Whether a preview is due at `now`, by bp_clock_seconds(); on the rank that writes and draws. */
 bool bp_preview_is_due(const BpPreview *preview, double now);
 
-/* Writes and draws the picture as it stands, by all ranks that share it. A file that cannot be written causes
- * one warning, and rendering continues. BP_ERR_DEVICE or BP_ERR_MEMORY: the sums could not be read. */
+/* Writes and draws the current picture; called by all ranks that share it. A file that cannot be written
+ * causes one warning, and rendering continues. BP_ERR_DEVICE or BP_ERR_MEMORY: the sums could not be read. */
 BpStatus bp_preview_update(BpPreview *preview, BpRender *render, BpError *err);
 
 /* Draws the finished picture, which another module writes. */

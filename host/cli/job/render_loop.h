@@ -1,8 +1,8 @@
-/* render_loop.h: rendering until a stop rule says so, or Ctrl-C.
+/* render_loop.h: renders until a stop rule applies or Ctrl-C is pressed.
  *
  * In:    a render that has made no step yet, its rule, its checkpoint, its preview.   Out: why it has ended.
- * Knows: signals, the progress bar, what ranks tell each other on the way.   Does not know: what becomes of
- * the picture. */
+ * Knows: signals, the progress bar, the messages between ranks.   Does not know: what becomes of the picture.
+ */
 #ifndef BP_CLI_JOB_RENDER_LOOP_H
 #define BP_CLI_JOB_RENDER_LOOP_H
 

@@ -1,5 +1,4 @@
-/* series.h: the pictures that one `ballpark render` makes: one, or one for each frame or each step of a
- * turntable.
+/* series.h: the pictures of one `ballpark render`: a single one, or one per frame or step of a turntable.
  *
  * In:    the command line.   Out: one scene after the other, and the names of their pictures.
  * Knows: --frame, --frames, --turntable, --fit.   Does not know: how a picture is made. */
@@ -23,17 +22,15 @@ typedef struct BpSeries {
     char output[4096];
 } BpSeries;
 
-/* Refuses what does not go together; for more than one picture, reads what all of them share: the number of
- * frames, a camera that shows all, the range of a column's values. */
+/* Refuses conflicting options; for several pictures, determines what they share: the number of frames, a
+ * camera that shows all, the range of a column's values. */
 BpStatus bp_series_begin(const BpCommandLine *line, BpSeries *series, BpError *err);
 void bp_series_end(BpSeries *series);
 
-/* The command line of the next picture: the same, with a numbered name for the picture where there are
- * several. */
+/* The command line of the next picture, with a numbered file name if there are several. */
 BpStatus bp_series_line(BpSeries *series, BpCommandLine *line, BpError *err);
 /* The scene of the next picture, with --width applied; it is valid until the next call, and the series
- * continues.
- */
+ * continues. */
 BpStatus bp_series_scene(BpSeries *series, const BpScene **scene, BpError *err);
 
 #endif

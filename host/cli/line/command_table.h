@@ -1,6 +1,6 @@
-/* command_table.h: which commands there are, and what the help and the command line need of each.
+/* command_table.h: the table of commands, with what the help and the parser need of each.
  *
- * In:    a name.   Out: a command's texts, operands and bit.
+ * In:    a name.   Out: a command: its texts, operands and bit.
  * Knows: the texts of all commands.   Does not know: what carries them out (cli/commands.h), which options
  * they take (option_list.h). */
 #ifndef BP_CLI_LINE_COMMAND_TABLE_H
@@ -21,7 +21,7 @@ typedef struct BpCommand {
     bool is_shared;          /* several processes that a launcher starts carry it out together */
 } BpCommand;
 
-/* Every command, in the order of the help, and how many they are. */
+/* Every command, in the order of the help, and their number. */
 extern const BpCommand bp_commands[];
 extern const size_t bp_command_count;
 

@@ -1,4 +1,4 @@
-/* command_text.h: a command line as text that a shell reads back.
+/* command_text.h: formats a command line so that it can be pasted into a shell.
  *
  * In:    the command line.   Out: "ballpark render scene.json --spp 64".
  * Knows: the options, quotes of shells.   Does not know: what the text is for. */
@@ -9,10 +9,9 @@
 
 #define BP_COMMAND_TEXT_SIZE 16384
 
-/* The operands, then the options in the order of their list; --resume with `resume`, or left out where that
- * is NULL;
- * with `resume` there is no --no-clobber; --time with `seconds` unless that is 0. "" where `size` is too
- * small. Returns `text`. */
+/* The operands, then the options in the order of their list; --resume with `resume`, unless that is NULL;
+ * then --no-clobber is left out; --time with `seconds` unless that is 0. "" if `size` is too small. Returns
+ * `text`. */
 const char *bp_command_text(const BpCommandLine *line, const char *resume, double seconds, char *text,
                             size_t size);
 

@@ -8,17 +8,17 @@
 
 #include "options.h"
 
-/* BP_ERR_USAGE names the two options, or the option and the operand, that name the same file. `picture`:
- * where the result goes when --output does not say, or NULL. `merge` may overwrite one of its .bpa files: all
- * have been read by then, and the file is replaced as a whole. */
+/* BP_ERR_USAGE names the two options, or the option and the operand, that name the same file. `picture`: the
+ * result's file without --output, or NULL. `merge` may overwrite one of its .bpa files: all have been read by
+ * then, and the file is replaced as a whole. */
 BpStatus bp_file_conflicts_check(const BpCommandLine *line, const char *picture, BpError *err);
 
-/* The same for the files of points that the scene has been read from. */
+/* The same for the point files that the scene was read from. */
 BpStatus bp_file_conflicts_check_scene(const BpCommandLine *line, const char *picture, const BpScene *scene,
                                        BpError *err);
 
 /* The same for a film that the run reads or keeps: BP_ERR_USAGE if a result would overwrite `film`, which
- * messages call `what`. `is_output`: --output may, since its sums take the film's place. */
+ * messages call `what`. `is_output`: --output may overwrite it, since its sums replace the film. */
 BpStatus bp_file_conflicts_check_film(const BpCommandLine *line, const char *film, const char *what,
                                       bool is_output, BpError *err);
 

@@ -31,23 +31,17 @@ enum {
  * the same for a value that goes to the member of BpRenderOptions with the same name and type
  * (cli/job/setup.c).
  *
- * Values, each with the name that the help gives it:
- *   BP_FLAG                          bool: the option takes no value
- *   BP_WHOLE(shown, least, most)     uint32_t or uint64_t: a whole number
- *   BP_REAL(shown, above, most)      double: above the one, up to the other
- *   BP_PERCENT(above, most)          double: the same, in percent; "1" and "1%" are the same
- *   BP_TIME(above, most)             double: seconds; "90", "90s", "1.5m", "1h30m"
- *   BP_PIXEL(shown, most)            BpPixel: two whole numbers up to `most`
- *   BP_SIGNED(shown)                 int64_t: a whole number that may be negative
- *   BP_SLICE(shown)                  BpSlice: A:B:S
- *   BP_PART(shown)                   BpShare: I/N, one of N shares
- *   BP_CHOICE(shown, names, first)   an enumeration with its names (base/names.h), from its value `first` on
- *   BP_WORD(word, ...)               const char *: one of these words
- *   BP_TEXT(shown)                   const char *: any text that is not empty
- *   BP_TEXTS(shown)                  BpTexts: the same, and the option may be given several times
- *   BP_RESULT(shown)                 const char *: a file to write, which no other file of the run may be
- * A choice without a name to show ("") and a word are shown as all their words: robust|plain. The help does
- * not speak of single commands and of defaults: BP_OPTION_NOTES, below, does. */
+ * Values, each with its name in the help: BP_FLAG   bool: the option takes no value BP_WHOLE(shown, least,
+ * most)   uint32_t or uint64_t: a whole number BP_REAL(shown, above, most)   double: above the one, up to the
+ * other BP_PERCENT(above, most)   double: the same, in percent; "1" and "1%" are the same BP_TIME(above,
+ * most)   double: seconds; "90", "90s", "1.5m", "1h30m" BP_PIXEL(shown, most)   BpPixel: two whole numbers up
+ * to `most` BP_SIGNED(shown)   int64_t: a whole number that may be negative BP_SLICE(shown)   BpSlice: A:B:S
+ * BP_PART(shown)   BpShare: I/N, one of N shares BP_CHOICE(shown, names, first)   an enumeration with its
+ * names (base/names.h), from its value `first` on BP_WORD(word, ...)   const char *: one of these words
+ * BP_TEXT(shown)   const char *: any text that is not empty BP_TEXTS(shown)   BpTexts: the same, and the
+ * option may be given several times BP_RESULT(shown)   const char *: a file to write, which no other file of
+ * the run may be A choice without a name to show ("") and a word are shown as all their words: robust|plain.
+ * Texts for single commands and defaults are in BP_OPTION_NOTES, below. */
 #define BP_OPTION_LIST(OPTION, RENDER_OPTION)                                                                \
     OPTION(OUTPUT, "output", 'o', BP_RENDER | BP_COST | BP_MERGE | BP_BENCH | BP_GENERATE | BP_SCENE,        \
            "where the result goes; \"-\" is standard output", const char *, output, BP_RESULT("FILE"))       \
@@ -205,13 +199,13 @@ enum {
     OPTION(WIDE, "wide", 0, BP_COMMANDS | BP_HELP, "do not wrap long lines to the width of the terminal",    \
            bool, wide, BP_FLAG)                                                                              \
     OPTION(QUIET, "quiet", 'q', BP_COMMANDS, "print errors only", bool, quiet, BP_FLAG)                      \
-    /* Not of commands: bp_command_line_parse() knows where these two may stand. */                          \
+    /* These two belong to no command; bp_command_line_parse() handles them. */                              \
     OPTION(HELP, "help", 'h', 0, "print this help", bool, help, BP_FLAG)                                     \
     OPTION(VERSION, "version", 'V', 0, "print version and commit", bool, version, BP_FLAG)
 
-/* Help texts of an option for some commands: NOTE(number, commands, help, default). `help` takes the
- * place of the text above unless it is NULL; `default` is NULL if the option has none. Every pair of a
- * command and an option stands in one row at most. */
+/* Help texts of an option for some commands: NOTE(number, commands, help, default). `help` takes the place of
+ * the text above unless it is NULL; `default` is NULL if the option has none. A pair of a command and an
+ * option has at most one row. */
 #define BP_OPTION_NOTES(NOTE)                                                                                \
     NOTE(OUTPUT, BP_RENDER,                                                                                  \
          "where the picture goes: a file, a folder for pictures named after their scenes, or \"-\" for "     \

@@ -1,7 +1,7 @@
-/* option_table.h: what the list of options (option_list.h) says of each, and the reading of its value.
+/* option_table.h: the properties of each option of the list (option_list.h), and the parsing of its value.
  *
  * In:    an option, the text of its value.   Out: its texts, getopt's tables, the value in BpCommandLine.
- * Knows: how each kind of value is read and shown.
+ * Knows: how each kind of value is parsed and printed.
  * Does not know: which options there are (option_list.h), what commands do with them. */
 #ifndef BP_CLI_LINE_OPTION_TABLE_H
 #define BP_CLI_LINE_OPTION_TABLE_H
@@ -14,7 +14,7 @@
 enum { BP_OPTION_LONG = 256 };
 
 const char *bp_option_name(BpOption option); /* "spp" */
-/* A line or two for the help of `command`, with its default, in `text`, which it returns. */
+/* Writes the help of the option for `command`, with its default, to `text`; returns `text`. */
 const char *bp_option_help(BpOption option, const BpCommand *command, char *text, size_t size);
 char bp_option_letter(BpOption option); /* 'o', or 0 */
 
@@ -22,20 +22,20 @@ char bp_option_letter(BpOption option); /* 'o', or 0 */
  * flag. */
 const char *bp_option_metavar(BpOption option, char *text, size_t size);
 
-/* The words that the value is one of, ending with NULL; NULL: it is something else. */
+/* The words that the option accepts, ending with NULL; NULL: its value is not a word. */
 const char *const *bp_option_words(BpOption option);
 
-/* Whether the option belongs to the command. --help and --version belong to none. */
+/* Whether the command accepts the option. No command lists --help and --version. */
 bool bp_option_taken(BpOption option, const BpCommand *command);
 
 /* The file that a BP_RESULT option names; NULL: it was not given, or is of another kind. */
 const char *bp_option_result(BpOption option, const BpCommandLine *line);
 
-/* Reads `text` (NULL for a flag) into the option's member of `line`, and notes that it was given.
- * BP_ERR_USAGE names the option, what was found and what was expected. */
+/* Parses `text` (NULL for a flag) into the option's member of `line`, and marks it as given. BP_ERR_USAGE
+ * names the option, the text and the expected value. */
 BpStatus bp_option_store(BpOption option, const char *text, BpCommandLine *line, BpError *err);
 
-/* The value of an option that was given, as it may be given again; "" for a flag. */
+/* Writes the value of a given option in a form that the command line accepts; "" for a flag. */
 void bp_option_show(BpOption option, const BpCommandLine *line, char *text, size_t size);
 
 /* Fills getopt's tables: `letters` is appended to. Room: BP_OPTION_NUMBER + 1 options, 2 letters each. */

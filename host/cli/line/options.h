@@ -1,6 +1,6 @@
 /* options.h: the command line, parsed and checked.
  *
- * In:    argc, argv.   Out: BpCommandLine; or an error that names the option and what it takes.
+ * In:    argc, argv.   Out: BpCommandLine; or an error that names the option and the values it accepts.
  * Knows: where options and operands may stand.
  * Does not know: scenes, devices, what a command does with its options (cli/commands.h), which options there
  * are (option_list.h). */
@@ -26,8 +26,8 @@ typedef struct BpPixel {
     uint32_t x, y;
 } BpPixel;
 
-/* A range of frames as Python writes it: from `first` up to but without `last`, every `step`-th; below 0:
- * counted from the end. */
+/* A range of frames as in Python: every `step`-th from `first` up to, but not including, `last`; negative
+ * numbers count from the end. */
 typedef struct BpSlice {
     int64_t first, last; /* last INT64_MAX: to the end */
     uint64_t step;
@@ -46,8 +46,8 @@ typedef struct BpTexts {
 } BpTexts;
 
 /* The command line as parsed: a member for each option, as option_list.h declares it. Every member is
- * checked; one whose option was not given is 0, NULL or the enumeration's first value, and bp_option_given()
- * tells. Texts point into argv, or are static. */
+ * checked; one whose option was not given (bp_option_given()) is 0, NULL or the enumeration's first value.
+ * Texts point into argv, or are static. */
 typedef struct BpCommandLine {
     const BpCommand *command; /* NULL: `ballpark`, `ballpark --help`, `ballpark --version` */
     char **operands;          /* the arguments that are not options: scenes, files, names */
@@ -63,9 +63,9 @@ static inline bool bp_option_given(const BpCommandLine *line, BpOption option) {
     return line->given[option];
 }
 
-/* Parses and checks. BP_ERR_USAGE names the option at fault, what was found, what is expected; a command or
- * an option that does not exist comes with the most similar one; a file used for two things names both uses.
- * Nothing to release. `argv` is reordered: operands come last, and the result points into it. */
+/* Parses and checks. BP_ERR_USAGE names the option at fault, the text and the expected value; for an unknown
+ * command or option, the most similar one; for a file with two uses, both. Nothing to release. `argv` is
+ * reordered: operands come last, and the result points into it. */
 BpStatus bp_command_line_parse(int argc, char **argv, BpCommandLine *line, BpError *err);
 
 #endif

@@ -1,4 +1,4 @@
-/* values.h: the arguments of options, parsed into checked values.
+/* values.h: parses the arguments of options into checked values.
  *
  * In:    an option's name, its argument, the range.   Out: the value, or BP_ERR_USAGE that names all three.
  * Knows: how numbers are written.   Does not know: which options there are. */
@@ -7,11 +7,11 @@
 
 #include "base/status.h"
 
-/* A whole number, decimal or 0x hexadecimal, min <= value <= max; no sign, no blanks, nothing behind it. */
+/* An integer, decimal or 0x hexadecimal, min <= value <= max; without sign, blanks or trailing text. */
 BpStatus bp_value_whole(const char *option, const char *text, uint64_t min, uint64_t max, uint64_t *value,
                         BpError *err);
 
-/* A number, min < value <= max (finite, C's spelling without hexadecimal, infinity and NaN). */
+/* A finite number, min < value <= max, in C's decimal notation. */
 BpStatus bp_value_real(const char *option, const char *text, double min, double max, double *value,
                        BpError *err);
 
@@ -24,15 +24,15 @@ BpStatus bp_value_percent(const char *option, const char *text, double min, doub
 BpStatus bp_value_time(const char *option, const char *text, double min, double max, double *value,
                        BpError *err);
 
-/* One of `count` words; *index is its place. The error lists them. */
+/* One of `count` words; *index is its position. The error lists all words. */
 BpStatus bp_value_choice(const char *option, const char *text, const char *const *words, size_t count,
                          unsigned *index, BpError *err);
 
-/* A whole number with or without a minus, of at most 15 digits. */
+/* An integer of at most 15 digits, which may be negative. */
 BpStatus bp_value_signed(const char *option, const char *text, int64_t *value, BpError *err);
 
-/* "A:B:S" as Python writes slices: each may be left out, A and B may be negative, S is at least 1. *last is
- * INT64_MAX where B is left out. */
+/* "A:B:S", a slice as in Python: each part is optional, A and B may be negative, S is at least 1. *last is
+ * INT64_MAX without B. */
 BpStatus bp_value_slice(const char *option, const char *text, int64_t *first, int64_t *last, uint64_t *step,
                         BpError *err);
 
@@ -41,7 +41,7 @@ BpStatus bp_value_slice(const char *option, const char *text, int64_t *first, in
 BpStatus bp_value_share(const char *option, const char *text, uint32_t *number, uint32_t *count,
                         BpError *err);
 
-/* "X,Y", both whole and up to `max`. */
+/* "X,Y", two integers up to `max`. */
 BpStatus bp_value_pair(const char *option, const char *text, uint64_t max, uint32_t *x, uint32_t *y,
                        BpError *err);
 

@@ -1,4 +1,4 @@
-/* content.h: what more than one command writes: scenes, films, pictures.
+/* content.h: writes scenes, films and pictures, for any command.
  *
  * In:    the command line, a path, the content.   Out: the file, as bp_line_write() writes it (output.h).
  * Knows: which function prints each.   Does not know: when and where it is written. */
@@ -14,7 +14,7 @@
 BpStatus bp_line_write_scene(const BpCommandLine *line, const char *path, const BpScene *scene, BpError *err);
 /* The film as a .bpa file. */
 BpStatus bp_line_write_film(const BpCommandLine *line, const char *path, const BpFilm *film, BpError *err);
-/* The picture in any other format; `extra`, NULL for nothing, as bp_picture_write_extra() has it. */
+/* The picture in any other format; `extra`: as for bp_picture_write_extra(); NULL: none. */
 BpStatus bp_line_write_picture(const BpCommandLine *line, const char *path, const BpPicture *picture,
                                BpFormat format, BpTransfer transfer, const BpImageExtra *extra, BpError *err);
 

@@ -1,7 +1,7 @@
 /* json_file.h: writes a JSON document to a file, completely or not at all, or to standard output.
  *
  * In:    a JSON value, a path.   Out: the file.
- * Knows: jansson, output files.   Does not know: what the document says. */
+ * Knows: jansson, output files.   Does not know: what the document means. */
 #ifndef BP_CLI_OUTPUT_JSON_FILE_H
 #define BP_CLI_OUTPUT_JSON_FILE_H
 
@@ -9,20 +9,19 @@
 
 #include <jansson.h>
 
-/* Writes `root`, indented, and releases it. "-": standard output. A NULL root is memory that ran out
- * (BP_ERR_MEMORY), so that the result of json_pack() can be passed on unchecked. */
+/* Writes `root`, indented, and releases it. "-": standard output. A NULL root means out of memory
+ * (BP_ERR_MEMORY), so the result of json_pack() can be passed unchecked. */
 BpStatus bp_json_write(const BpCommandLine *line, json_t *root, const char *path, BpError *err);
 /* The same in another format, by `print`, which gets the root. */
 BpStatus bp_json_write_as(const BpCommandLine *line, json_t *root, const char *path, BpPrint *print,
                           BpError *err);
 
-/* A number of 64 bits, exact: jansson's integers have a sign, so from 2^63 on it is a text of decimal digits.
- */
+/* An exact 64-bit number: since jansson's integers are signed, a string of decimal digits from 2^63 on. */
 json_t *bp_json_whole(uint64_t number);
 
 json_t *bp_json_triple(const double v[3]); /* an array of three numbers, which are finite */
 
-/* `root` with the members of `part` behind its own. Takes both over. NULL, when either is or memory ran out.
+/* Appends the members of `part` to `root`. Takes ownership of both. NULL: either was NULL, or out of memory.
  */
 json_t *bp_json_join(json_t *root, json_t *part);
 

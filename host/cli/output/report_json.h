@@ -1,7 +1,7 @@
-/* report_json.h: what a render was set to, as members of a JSON document, and what a calibration has found.
+/* report_json.h: a render's settings and calibration as members of a JSON document.
  *
  * In:    a render's report.   Out: objects, words.
- * Knows: the settings and their names.   Does not know: which document they go to. */
+ * Knows: the settings and their names.   Does not know: which document they belong to. */
 #ifndef BP_CLI_OUTPUT_REPORT_JSON_H
 #define BP_CLI_OUTPUT_REPORT_JSON_H
 

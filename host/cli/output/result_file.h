@@ -13,44 +13,44 @@ typedef struct BpResultFile {
     char path[4096];      /* "-": standard output */
     char error_map[4096]; /* "": none */
     BpFormat format;
-    bool is_own; /* what is there is a checkpoint of this run, so --no-clobber does not speak of it */
+    bool is_own; /* the file there is a checkpoint of this run, so --no-clobber does not apply */
 } BpResultFile;
 
-/* Where the result goes: -o, or `source` with its ending replaced by that of the format, in the current
- * folder, or for `render` in the folder that -o names; in which format: --format, else by the ending, else
- * PNG. Likewise the error map, NAME-error.png in a folder. With several scenes both must be folders. Finds
- * out that they can be written, before any work is done. BP_ERR_USAGE (no format has that ending; binary data
- * to a terminal; one file for several pictures, or for two things) or BP_ERR_FILE. */
+/* Chooses the path of the result: -o, or `source` with its ending replaced by that of the format, in the
+ * current folder, or for `render` in the folder that -o names; and the format: --format, else by the ending,
+ * else PNG. Likewise the error map, NAME-error.png in a folder. With several scenes both must be folders.
+ * Checks that both can be written, before any work is done. BP_ERR_USAGE (no format has that ending; binary
+ * data to a terminal; one file for several pictures, or for two things) or BP_ERR_FILE. */
 BpStatus bp_result_choose(const BpCommandLine *line, const char *source, BpResultFile *result, BpError *err);
 
-/* Whether --output PATH is a folder: it exists as one, or ends with a slash. */
+/* Whether --output PATH is a folder: one exists there, or it ends with a slash. */
 bool bp_result_is_folder(const char *path);
 
-/* Says of both files, when work begins, that they will be overwritten (output.h). */
+/* Announces, when work begins, which of both files will be overwritten (output.h). */
 void bp_result_say_overwritten(const BpCommandLine *line, const BpResultFile *result);
 
 /* Turns --width-mm and --dpi into --width. BP_ERR_USAGE: they do not go together, or give no picture. */
 BpStatus bp_result_take_width(BpCommandLine *line, BpError *err);
 
-/* Writes it, and the error map if there is to be one. `transfer`: unless --transfer says otherwise.
- * `rendered`: the film is in no file yet, and is kept if the result cannot be written (keep_sums.h).
- * `scene`: Optional; where it shows a legend, a colour bar is drawn into pictures of 8 bits, and --depth-fog
- * fades into its backdrop. A film of a render that has not ended may lack what outlines and fog need; then
- * they are left out. */
+/* Writes it, and the error map if there is to be one. `transfer`: unless --transfer overrides it. `rendered`:
+ * the film is in no file yet, and is kept if the result cannot be written (keep_sums.h). `scene`: Optional;
+ * where it shows a legend, a colour bar is drawn into pictures of 8 bits, and --depth-fog fades into its
+ * backdrop. A film of a render that has not ended may lack what outlines and fog need; then they are left
+ * out. */
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
                          bool rendered, BpTransfer transfer, const BpScene *scene, BpError *err);
 
 /* Whether depth decides how the picture looks: --outlines or --depth-fog. */
 bool bp_result_has_cues(const BpCommandLine *line);
 
-/* The command line as it would be if it named this result's files itself. */
+/* The command line with this result's files named explicitly. */
 BpCommandLine bp_result_line(const BpCommandLine *line, const BpResultFile *result);
 
 /* "cover.png", or "standard output". */
 const char *bp_result_name(const BpResultFile *result);
 
-/* Warns on standard error, unless --quiet, of rounding that shows, since the picture is so much dimmer than
- * the brightest lamp of its scene. */
+/* Warns on standard error, unless --quiet, about visible rounding in a picture that is much dimmer than the
+ * brightest lamp of its scene. */
 void bp_result_warn(const BpCommandLine *line, const BpFilm *film);
 
 #endif

@@ -1,13 +1,14 @@
-/* device_survey.h: which devices there are, found out without trusting their drivers.
+/* device_survey.h: lists the devices without trusting their drivers.
  *
  * In:    the drivers' files (.icd) that the OpenCL loader reads.   Out: a list of devices; the drivers that
- * crash or hang when they are asked for theirs.
- * Knows: child processes, where the loader looks (OCL_ICD_VENDORS).   Does not know: OpenCL.
+ * crash or hang when they list theirs.
+ * Knows: child processes, where the loader looks (OCL_ICD_VENDORS). Does
+ * not know: OpenCL.
  *
  * The loader loads every driver into the process that calls it, so a driver that hangs blocks that process. A
- * child process asks for all; only if it does not answer, a child each asks the drivers one by one, with a
- * folder that holds this one's file alone. Those that do not answer are left out from then on:
- * OCL_ICD_VENDORS names a folder of the others' files, for this process and its children. */
+ * child process lists all devices; only if it fails, one child per driver lists its devices, with a folder
+ * that holds only that driver's file. Drivers that fail are excluded from then on: OCL_ICD_VENDORS names a
+ * folder of the others' files, for this process and its children. */
 #ifndef BP_CLI_PROCESS_DEVICE_SURVEY_H
 #define BP_CLI_PROCESS_DEVICE_SURVEY_H
 
@@ -29,15 +30,15 @@ typedef struct BpDeviceSurvey {
     BpTemporaryFolder folder; /* of the other drivers' files, if one is broken */
 } BpDeviceSurvey;
 
-/* Lists the devices; drivers that are broken are named on standard error too, unless `quiet`. `seconds`: per
- * attempt. Call it before this process uses OpenCL. BP_ERR_BROKEN_DEVICE: no answer, and no single driver is
- * to blame. Clear it in any case, but only after the devices have been used. */
+/* Lists the devices; broken drivers are named on standard error too, unless `quiet`. `seconds`: per attempt.
+ * Call it before this process uses OpenCL. BP_ERR_BROKEN_DEVICE: no list, although no single driver fails.
+ * Clear it in any case, but only after the devices have been used. */
 BpStatus bp_device_survey(double seconds, bool quiet, BpDeviceSurvey *survey, BpError *err);
-/* The same where asking all drivers at once is known to fail: asks each by itself. */
+/* The same if loading all drivers at once is known to fail: tries each by itself. */
 BpStatus bp_device_survey_each(double seconds, bool quiet, BpDeviceSurvey *survey, BpError *err);
 void bp_device_survey_clear(BpDeviceSurvey *survey);
 
-/* The device that `text` means, as bp_device_choose(); the error names broken drivers too. */
+/* The device that `text` selects, as by bp_device_choose(); the error names broken drivers too. */
 BpStatus bp_device_survey_find(const BpDeviceSurvey *survey, const char *text, BpDeviceInfo *device,
                                BpError *err);
 

@@ -2,8 +2,8 @@
  * SIGTERM, SIGHUP (the terminal was closed; unless ignored, as nohup arranges), SIGXCPU (the limit on
  * processor time), SIGUSR1 and SIGUSR2 (a batch system's notice that time is nearly over).
  *
- * In:    signals.   Out: whether there has been one; a message, printed if the program does not react in
- * time. Knows: signals, the thread that waits for them, that unfinished files must be removed. Does not know:
+ * In:    signals.   Out: whether one has arrived; a message, printed if the program does not react in time.
+ * Knows: signals, the thread that waits for them, that unfinished files must be removed.   Does not know:
  * what is interrupted.
  *
  * At first there is nothing to save, and a signal ends the program with code 130. A command that has
@@ -14,8 +14,8 @@
 
 #include <stdbool.h>
 
-/* For main, once, before anything else: threads and processes that are started later hold the signals off.
- * And for a process that was forked and is to be interrupted like this one. */
+/* Called once by main, before anything else, so that threads and processes started later block the signals;
+ * and by a forked process that should be interruptible like this one. */
 void bp_interrupt_install(void);
 
 /* From this call on, the first signal is recorded, and a second SIGINT or SIGTERM ends the program at once.
@@ -23,9 +23,8 @@ void bp_interrupt_install(void);
 void bp_interrupt_catch(void);
 bool bp_interrupted(void);
 
-/* The message for standard error if, most of a second after a signal, the text is still set: the process may
- * be waiting for something that never comes, and may then be killed. Copied; "": nothing.
- */
+/* Sets the message that is printed to standard error if it is still set most of a second after a signal: the
+ * process may be waiting for an event that never comes, and may then be killed. Copied; "": none. */
 void bp_interrupt_explain(const char *text);
 
 #endif

@@ -1,7 +1,7 @@
-/* progress.h: the text of a render's progress bar, and of the lines that take its place in a log.
+/* progress.h: formats a render's progress bar, and the lines that replace it in a log.
  *
  * In:    progress, speed, noise, the terminal's width.   Out: one line of text.
- * Knows: what fits into a line.   Does not know: the terminal, what is rendered. */
+ * Knows: how to fill a line.   Does not know: the terminal, what is rendered. */
 #ifndef BP_CLI_TERMINAL_PROGRESS_H
 #define BP_CLI_TERMINAL_PROGRESS_H
 
@@ -15,9 +15,9 @@ typedef struct BpProgressView {
     double seconds_left;       /* NaN: not known yet */
 } BpProgressView;
 
-/* "███░░░  43 %  12 s left  noise 2.1 %  5.2 million samples/s" in less than `columns` columns: what does not
- * fit is left out, from the right; without room for a bar, only the percentage is shown, or nothing. Returns
- * `text`. */
+/* "███░░░  43 %  12 s left  noise 2.1 %  5.2 million samples/s" in fewer than `columns` columns: parts
+ * that do not fit are omitted, from the right; without room for a bar, only the percentage is shown, or
+ * nothing. Returns `text`. */
 const char *bp_progress_format(const BpProgressView *view, unsigned columns, bool utf8, char *text,
                                size_t size);
 

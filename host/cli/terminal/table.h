@@ -1,7 +1,7 @@
-/* table.h: a table as text, in blocks that fit the page.
+/* table.h: prints a table in blocks that fit the page.
  *
  * In:    cells of text.   Out: lines.
- * Knows: columns, their widths.   Does not know: what the cells say. */
+ * Knows: columns, their widths.   Does not know: what the cells mean. */
 #ifndef BP_CLI_TERMINAL_TABLE_H
 #define BP_CLI_TERMINAL_TABLE_H
 
@@ -21,8 +21,8 @@ typedef struct BpTable {
 bool bp_table_make(BpTable *table, size_t columns, size_t rows, const bool *right);
 char *bp_table_cell(const BpTable *table, size_t row, size_t column);
 
-/* Prints it with as many columns beside each other as `width` characters hold, and the others below, each
- * block with the first column before it. 0: all beside each other. */
+/* Prints as many columns side by side as fit into `width` characters, and the others in blocks below, each
+ * preceded by the first column. 0: all side by side. */
 void bp_table_print(const BpTable *table, size_t width, FILE *out);
 
 #endif

@@ -1,7 +1,7 @@
 /* terminal.h: a status line on the terminal.
  *
  * In:    texts.   Out: one line on standard error that replaces the one before and finally disappears.
- * Knows: standard error, whether it is a terminal, its width.   Does not know: what the texts say.
+ * Knows: standard error, whether it is a terminal, its width.   Does not know: what the texts mean.
  *
  * With --quiet, and where standard error is not a terminal, nothing is ever written. */
 #ifndef BP_CLI_TERMINAL_TERMINAL_H
@@ -9,30 +9,29 @@
 
 #include "base/status.h"
 
-/* Whether a status line is wanted: standard error is a terminal that can move its cursor, and not `quiet`. */
+/* Whether to show a status line: standard error is a terminal that can move its cursor, and not `quiet`. */
 bool bp_terminal_is_live(bool quiet);
 
-/* Columns of the terminal at `descriptor` now; if there is no terminal or it does not report its width,
- * COLUMNS of the environment, else 80; at least 1. */
+/* The current width of the terminal at `descriptor`; if that is unknown, COLUMNS of the environment, else 80;
+ * at least 1. */
 unsigned bp_terminal_width(int descriptor);
 /* The columns of standard error. */
 unsigned bp_terminal_columns(void);
 
-/* Whether characters outside ASCII are shown (by LC_ALL, LC_CTYPE, LANG). */
+/* Whether non-ASCII characters can be displayed (by LC_ALL, LC_CTYPE, LANG). */
 bool bp_terminal_has_utf8(void);
 
-/* Shows `text` as the status line, in place of the one before. "" takes it away. The caller cuts it to width.
- */
+/* Replaces the status line by `text`, which the caller has cut to width; "" removes it. */
 void bp_terminal_show(const char *text);
 
-/* A wait during which nothing can be counted: after half a second a line of its own thread says what is
- * awaited and for how long already. */
+/* A wait without measurable progress: after half a second, a thread shows a line with its purpose and the
+ * seconds so far. */
 typedef struct BpWaiting BpWaiting;
 
-/* Begins; `format` as for printf. NULL if no line is wanted or no thread can be started, which is not a
+/* Begins; `format` as for printf. NULL if there is no status line or no thread can be started, which is not a
  * failure. */
 BpWaiting *bp_waiting_begin(bool quiet, const char *format, ...) BP_PRINTF_LIKE(2, 3);
-/* Ends, takes the line away, frees. Accepts NULL. */
+/* Ends the wait, removes the line, frees. Accepts NULL. */
 void bp_waiting_end(BpWaiting *waiting);
 
 #endif
