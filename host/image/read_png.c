@@ -1,10 +1,10 @@
 /* read_png.c: images as PNG files, by libpng; see reader.h.
  *
- * 8 and 16 bits a channel, grey, colours or a palette, interlaced or not; alpha is left out. Where the scene
- * does not say how numbers are encoded, the file does: by the chunks gAMA and cHRM, which are followed, or by
- * sRGB. The colour spaces of ICC profiles and of cICP are not known here: such numbers are taken for sRGB's,
- * which is noted unless they are. The order of these chunks is that of the PNG specification (third edition,
- * 2023, section 4.3). */
+ * 8 and 16 bits a channel, grey, colours or a palette, interlaced or not; alpha is left out, with a note
+ * where texels are transparent. Where the scene does not say how numbers are encoded, the file does: by the
+ * chunks gAMA and cHRM, which are followed, or by sRGB. The colour spaces of ICC profiles and of cICP are not
+ * known here: such numbers are taken for sRGB's, which is noted unless they are. The order of these chunks is
+ * that of the PNG specification (third edition, 2023, section 4.3). */
 #include "primaries.h"
 #include "reader.h"
 
@@ -29,7 +29,11 @@ typedef struct PngReader {
     float *light;       /* what each number stands for */
     png_colorp palette; /* NULL: the numbers are colours themselves */
     int palette_count;
-    size_t outside; /* texels that name no colour of the palette */
+    png_bytep alphas; /* of the first alpha_count colours of the palette; those of the others are opaque */
+    int alpha_count;
+    size_t channels;    /* 3, or 4 with alpha, where there is no palette */
+    size_t outside;     /* texels that name no colour of the palette */
+    size_t transparent; /* texels that are not opaque */
     BpImage *image;
     uint32_t row;      /* that is being read */
     char fault[128];   /* as libpng has it */
@@ -187,6 +191,7 @@ static void store_indices(PngReader *reader, const unsigned char *bytes, float *
         const bool outside = bytes[i] >= reader->palette_count;
         const png_color color = outside ? (png_color){0, 0, 0} : reader->palette[bytes[i]];
         reader->outside += outside;
+        reader->transparent += bytes[i] < reader->alpha_count && reader->alphas[bytes[i]] < 255;
         texels[3 * i] = reader->light[color.red];
         texels[3 * i + 1] = reader->light[color.green];
         texels[3 * i + 2] = reader->light[color.blue];
@@ -199,8 +204,15 @@ static void store_row(PngReader *reader, const unsigned char *bytes, uint32_t ro
         store_indices(reader, bytes, texels);
         return;
     }
-    for (size_t i = 0; i < (size_t)3 * reader->image->width; i++)
-        texels[i] = reader->light[wide ? (size_t)bytes[2 * i] << 8 | bytes[2 * i + 1] : bytes[i]];
+    for (size_t i = 0; i < reader->image->width; i++)
+        for (size_t c = 0; c < reader->channels; c++) {
+            const size_t at = i * reader->channels + c;
+            const size_t number = wide ? (size_t)bytes[2 * at] << 8 | bytes[2 * at + 1] : bytes[at];
+            if (c < 3)
+                texels[3 * i + c] = reader->light[number];
+            else
+                reader->transparent += number < (wide ? 65535 : 255);
+        }
 }
 
 /* Everything that may come back by longjmp; what it takes stands in `reader`. */
@@ -229,17 +241,20 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
     if (reader->input->encoding == BP_ENCODING_OF_FORMAT) read_colors(reader, &colors);
     if (png_get_color_type(png, info) == PNG_COLOR_TYPE_PALETTE) {
         png_get_PLTE(png, info, &reader->palette, &reader->palette_count);
+        png_get_tRNS(png, info, &reader->alphas, &reader->alpha_count, NULL);
         png_set_packing(png);
         png_set_check_for_invalid_index(png, 0);
     } else {
-        png_set_expand(png); /* grey of fewer than 8 bits */
-        png_set_strip_alpha(png);
+        png_set_expand(png); /* grey of fewer than 8 bits, and one transparent colour to alpha */
         png_set_gray_to_rgb(png);
     }
     const bool interlaced = png_set_interlace_handling(png) > 1;
     png_read_update_info(png, info);
     const size_t row_bytes = png_get_rowbytes(png, info);
-    if (row_bytes != (size_t)width * (reader->palette != NULL ? 1 : wide ? 6 : 3))
+    reader->channels = png_get_channels(png, info);
+    const size_t texel_bytes = reader->palette != NULL ? 1 : reader->channels * (wide ? 2 : 1);
+    if (row_bytes != width * texel_bytes ||
+        (reader->palette == NULL && reader->channels != 3 && reader->channels != 4))
         png_error(png, "unexpected kind of pixels");
     reader->light = light_of_numbers(wide ? 16 : 8, colors.exponent);
     reader->bytes = calloc(interlaced ? height : 1, row_bytes);
@@ -261,6 +276,9 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
     if (reader->warning[0] != '\0' && reader->input->encoding == BP_ENCODING_OF_FORMAT)
         bp_texels_note(reader->image, "its colours may be wrong, since a chunk is not used (%s)",
                        reader->warning);
+    if (reader->transparent > 0)
+        bp_texels_note(reader->image, "its alpha is left out, though %zu of %zu texels are not opaque",
+                       reader->transparent, (size_t)width * height);
     if (reader->outside > 0)
         bp_texels_note(reader->image, "%zu texel%s of a colour that its palette lacks: black",
                        reader->outside, bp_plural(reader->outside));

@@ -94,9 +94,10 @@ def seen(channels, data, display):
     return images.pfm(display[2] - display[0] + 1, display[3] - display[1] + 1, texel)
 
 
-def png(chunks, texels=((188, 100, 30),), channels=3):
-    body = b"\0" + bytes(n for texel in texels for n in texel)
-    head = struct.pack(">2I5B", len(texels), 1, 8, {1: 0, 3: 2}[channels], 0, 0, 0)
+def png(chunks, texels=((188, 100, 30),), kind=2, bits=8):
+    """One row; `kind`: 0 grey, 2 colours, 3 a palette, and 4 more with alpha."""
+    body = b"\0" + b"".join(n.to_bytes(bits // 8, "big") for texel in texels for n in texel)
+    head = struct.pack(">2I5B", len(texels), 1, bits, kind, 0, 0, 0)
     return (b"\x89PNG\r\n\x1a\n" + images.chunk(b"IHDR", head) + b"".join(images.chunk(k, v) for k, v in chunks) +
             images.chunk(b"IDAT", zlib.compress(body)) + images.chunk(b"IEND", b""))
 
@@ -393,7 +394,7 @@ class ImageFiles(ProgramTest):
         found, said = self.texel("a.png", png([gamma(55556), places(p3)]), encoding="linear")
         self.assert_near(found, power(1), 5e-6)
         self.assertEqual(said, "")
-        self.assertEqual(self.texel("a.png", png([places(p3)], [(128,)], 1))[1], "")
+        self.assertEqual(self.texel("a.png", png([places(p3)], [(128,)], kind=0))[1], "")
 
     def test_png_orientation(self):
         """Exif data of both byte orders, before and behind the texels; damaged data has no orientation."""
@@ -419,6 +420,25 @@ class ImageFiles(ProgramTest):
                 self.assert_near(self.texel("a.png", png([(b"eXIf", exif(order, 6)[:size])]))[0], srgb, 5e-6)
             for far in (exif(order, 6)[:4] + b"\xff" * 4 + exif(order, 6)[8:], exif(order, 6)[:8] + b"\xff\xff" + exif(order, 6)[10:]):
                 self.assert_near(self.texel("a.png", png([(b"eXIf", far)]))[0], srgb, 5e-6)
+
+    def test_png_alpha(self):
+        """It changes no colour, and a note counts the texels that it would make transparent."""
+        color, grey = (188, 100, 30), (100,)
+        table = [(b"PLTE", bytes((*color, *color, *color)))]
+        for kind, bits, chunks, texels, transparent in (
+                (6, 8, [], [(*color, 255)] * 3, 0), (6, 8, [], [(*color, 255), (*color, 0), (*color, 254)], 2),
+                (6, 16, [], [(*(257 * n for n in color), 65535), (*(257 * n for n in color), 65534)], 1),
+                (4, 8, [], [(*grey, 0), (*grey, 255)], 1), (4, 16, [], [(25700, 255), (25700, 65535), (25700, 0)], 2),
+                (3, 8, table, [(0,), (1,), (2,)], 0), (3, 8, table + [(b"tRNS", b"\xff\0")], [(0,), (1,), (2,), (1,)], 2),
+                (3, 8, table + [(b"tRNS", b"\x80")], [(0,), (2,)], 1), (3, 8, table + [(b"tRNS", b"\xff\xff")], [(0,), (1,)], 0),
+                (2, 8, [(b"tRNS", bytes((0, 188, 0, 100, 0, 30)))], [color, color], 2),
+                (2, 8, [(b"tRNS", bytes((0, 188, 0, 100, 0, 31)))], [color, color], 0),
+                (0, 8, [(b"tRNS", bytes((0, 100)))], [grey, grey], 2), (0, 8, [(b"tRNS", bytes((0, 99)))], [grey, grey], 0)):
+            found, said = self.texel("a.png", png(chunks, texels, kind, bits))
+            self.assert_near(found, [linear(v) for v in (grey * 3 if kind in (0, 4) else color)], 5e-6, (kind, bits, chunks))
+            note = f"its alpha is left out, though {transparent} of {len(texels)} texels are not opaque"
+            self.assertEqual(note in said, transparent > 0, (kind, bits, chunks, said))
+            self.assertEqual(said == "", transparent == 0, said)
 
     @staticmethod
     def profile(text):
