@@ -298,7 +298,10 @@ class Atoms(listed.ListTest):
         self.assertEqual(self.element(symbol=" X", name=" UNK", residue="UNX"), ("", False))  # the file says: unknown
         # Names of sites of models are those of atoms as well, where the file says so: the manganese of photosystem II.
         for name, symbol, residue, expected in [("MN1 ", "MN", "OEX", ("Mn", 0)), ("MN1 ", "  ", "OEX", ("", DUMMY)), (" MW ", "  ", "SOL", ("", DUMMY)),
-                                                (" DU ", " C", "LIG", ("C", 0)), (" LP1", " X", "LIG", ("", DUMMY)), (" M  ", " M", "HOH", ("", DUMMY))]:
+                                                (" DU ", " C", "LIG", ("C", 0)), (" LP1", " X", "LIG", ("", DUMMY)), (" M  ", " M", "HOH", ("", DUMMY)),
+                                                # Symbols of OpenMM, ParmEd and MDTraj for points without a nucleus; by its name the first is deuterium.
+                                                (" D1 ", "EP", "HOH", ("", DUMMY)), ("DCA ", "EP", "ALA", ("", DUMMY)), (" O1 ", "VS", "HOH", ("", DUMMY)),
+                                                (" L1 ", "LP", "LIG", ("", DUMMY)), (" C1 ", "Du", "LIG", ("", DUMMY)), (" D1 ", " D", "HOH", ("H", 0))]:
             found = self.of("a.pdb", atom(name=name, symbol=symbol, residue=residue)).atoms[0]
             self.assertEqual((found.element, found.flags), expected, (name, symbol))
         # PDBQT has its types in columns 78 and 79.
