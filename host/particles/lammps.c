@@ -194,6 +194,8 @@ size_t lammps_layouts(const char *comment, LammpsLayout layouts[LAMMPS_LAYOUTS_M
     char text[LAMMPS_STYLE_SIZE], *words[8] = {NULL};
     size_t found = 0;
     snprintf(text, sizeof text, "%s", comment != NULL ? comment : "");
+    for (char *c = text; *c != '\0'; c++) /* "full: id mol ...", "(full)" */
+        if (strchr(":()", *c) != NULL) *c = ' ';
     size_t count = split_words(text, words, 8);
     if (count > 8) count = 8;
     for (size_t s = 0; s < STYLES && found < LAMMPS_LAYOUTS_MAX; s++) {

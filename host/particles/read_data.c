@@ -243,7 +243,7 @@ static BpStatus take_label(const Input *input, Data *data, char **words, size_t 
 static BpStatus take_mass(const Input *input, Data *data, char **words, size_t count, BpError *err) {
     double mass = 0;
     if (count != 2 || !word_number(words[1], &mass))
-        return input_wrong(input, words[0], "a type and its mass", err);
+        return input_wrong(input, words[count == 2], "a type and its mass", err);
     data->has_masses = true;
     data->mass[type_place(data, words[0])] = mass;
     return BP_OK;

@@ -101,6 +101,7 @@ class Written(LammpsTest):
             self.check_style(style, f"Atoms  #{style.upper()}  ", short)
             first, *rest = style.split()
             self.check_style(style, " ".join([f"Atoms # {first}/kk", *rest]), lines)
+            self.check_style(style, f"Atoms # {style}: id type x y z" if not rest else f"Atoms # ({style})", lines)
         documented = "1 1 -0.75 1.25 2.25 4.5 0 0 1 1 0 1 1 0", "2 3 -0.75 3.125 5.5 6.5 0 0 1 1 0 1 1 0"
         self.assertEqual(self.values("a.data", data(documented, "Atoms # dielectric"), "q")["positions"], PLACES)
         # The manual has the columns of template in another order than LAMMPS writes; the header's types tell here.
@@ -180,6 +181,11 @@ class Written(LammpsTest):
                                        labels, after))
         self.assertEqual((s["pairs"], s["notes"]), ([[0, 1]], ""))
 
+    def test_wrong_masses(self):
+        for line, says in (("2 1.1.7", '"1.1.7"'), ("2 x", '"x"'), ("2 1 1", '"2"'), ("2", '"2"')):
+            self.refuse("a.data", data(WRITTEN["atomic"], "Atoms # atomic", before=f"Masses\n\n1 1\n{line}\n\n"),
+                        f"found {says}, expected a type and its mass")
+
     def test_sections(self):
         own = ["Pair Coeffs # lj/class2/coul/long", "PairIJ Coeffs # lj96/cut", "Bond Coeffs", "BondBond13 Coeffs",
                "AngleAngleTorsion Coeffs  # class2", "Bond Type Labels", "Improper Type Labels", "Lines", "Triangles", "Bodies",
@@ -203,6 +209,13 @@ class Written(LammpsTest):
         # Where the header does not count the types, the shape of the lines tells.
         text = data(atoms, "Atoms # atomic", HEAD.replace("3 atom types\n", ""), masses + "CMAP\n\n1 1 1 1 1 1\n\n")
         self.assertEqual(self.values("a.data", text)["symbols"], ["C", "O"])
+
+    def test_any_name(self):
+        """The header tells the format where the name does not; the name counts where it does."""
+        for name in ("system", "system.in.real", "Data.x", "system.lammps", "system.gz"):
+            for text in (data(WRITTEN["full"], "Atoms # full"), data(WRITTEN["full"], "Atoms # full").replace("xlo xhi", "xlo\t xhi")):
+                self.assertEqual(self.values(name, gzip.compress(text.encode()) if name == "system.gz" else text)["positions"], PLACES)
+        self.refuse("a.xyz", data(WRITTEN["full"], "Atoms # full"), "expected the number of atoms")
 
     def test_numbers_of_atoms(self):
         head = HEAD.replace("3 atom", "1 bonds\n3 atom")
