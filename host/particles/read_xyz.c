@@ -12,6 +12,7 @@
 #include <strings.h>
 
 enum { WORDS_MAX = 160 };
+#define TINKER "; if it is an XYZ file of Tinker, convert it, with Open Babel for example"
 
 typedef enum Role {
     SPECIES,
@@ -276,6 +277,16 @@ static size_t split_atom(char *line, const Layout *layout, char **words) {
     }
 }
 
+/* Word `w` is no coordinate. Tinker's lines have the atom's number before its name. */
+static BpStatus fail_coordinate(const Input *input, const Layout *layout, char *const *words, size_t w,
+                                BpError *err) {
+    int64_t whole = 0;
+    const bool shifted = !layout->extended && w == 1 && word_whole(words[0], &whole);
+    return input_wrong(input, words[w],
+                       shifted ? "a finite number: a coordinate" TINKER : "a finite number: a coordinate",
+                       err);
+}
+
 static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number, uint64_t count,
                           BpError *err) {
     Input *const input = &file->input;
@@ -300,7 +311,7 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
         double value = 0;
         for (size_t i = 0; i < 3; i++) {
             if (role == POSITION && !word_number_or_none(words[w + i], &particle.position[i]))
-                return input_wrong(input, words[w + i], "a finite number: a coordinate", err);
+                return fail_coordinate(input, layout, words, w + i, err);
             if (role == SHAPE && !word_number(words[w + i], &shape[i]))
                 return input_wrong(input, words[w + i], "a finite number: half an axis of an ellipsoid", err);
             if (role == COLOR && !word_number(words[w + i], &particle.color[i]))
@@ -351,10 +362,13 @@ static BpStatus fail_count(const BpParticleFile *file, const char *line, char *c
         return input_fail(
             &file->input, true, err,
             "found an empty file, expected the number of atoms alone: an XYZ file's first line");
-    return input_fail(
-        &file->input, true, err,
-        "found other words, expected the number of atoms alone: an XYZ file's first line%s",
-        word_number(words[0], &number) ? "; a table of points is read under a name that ends in .csv" : "");
+    int64_t whole = 0;
+    return input_fail(&file->input, true, err,
+                      "found other words, expected the number of atoms alone: an XYZ file's first line%s",
+                      !word_number(words[0], &number) ? ""
+                      : word_whole(words[0], &whole)
+                          ? TINKER "; a table of points is read under a name that ends in .csv"
+                          : "; a table of points is read under a name that ends in .csv");
 }
 
 /* Whether a line, apart from the type of the atom, could be one of the frame's: it has as many words, and

@@ -433,6 +433,14 @@ class Formats(FileTest):
                                         ("HW1 ", "SOL", "H"), ("MW  ", "SOL", ""), (" BR ", "LIG", "B"), ("BR  ", "LIG", "Br")]:
             self.assertEqual(element(name, residue), expected, (name, residue))
 
+    def test_tinker(self):
+        """Its XYZ files have a number before each name, and may have a line of the cell."""
+        lines = " 1  C  0.5 1 2  221  2\n 2  N  1.5 1 2  220  1\n"
+        for head in (" 2\n", " 2\n 30 30 30 90 90 90\n", " 2  a title\n"):
+            self.refuse("a.xyz", head + lines, "if it is an XYZ file of Tinker, convert it")
+        result = self.answer(self.write("a.xyz", "1\n\nC x 1 2\n"))
+        self.assertIn('found "x", expected a finite number: a coordinate\n', result.stderr)
+
     def test_columns_have_names(self):
         self.refuse("a.csv", CSV, 'found no column "charg"', "x, y, z, radius, charge", arguments=[0, "charg"])
 
