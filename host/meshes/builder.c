@@ -32,6 +32,7 @@ void mesh_builder_init(MeshBuilder *builder, Input *input, const char *path, BpM
 void mesh_builder_clear(MeshBuilder *builder) {
     free(builder->vertex_colors.values);
     free(builder->polygon_colors.values);
+    free(builder->placeless);
     free(builder->polygons);
     free(builder->corners);
     names_clear(&builder->names);
@@ -58,22 +59,29 @@ BpStatus mesh_make_room(const Input *input, void **array, size_t *capacity, size
                    (err))
 
 BpStatus mesh_add_vertex(MeshBuilder *builder, const double position[3], bool with_line, BpError *err) {
+    static const double nowhere[3] = {0, 0, 0};
     BpMesh *const mesh = builder->mesh;
-    for (int a = 0; a < 3; a++) {
+    const bool placed = mesh_has_place(position);
+    for (int a = 0; a < 3 && placed; a++) {
         if (fabs(position[a]) <= BP_MESH_COORDINATE_MAX) continue;
         char found[BP_NUMBER_TEXT_SIZE];
         return input_fail(builder->input, with_line, err,
                           "vertex %zu (from %" PRIu32
                           "): found %s for %c, expected a number of at most 1e100",
                           mesh->vertex_count + builder->first_index, builder->first_index,
-                          isnan(position[a]) ? "no number" : bp_number_text(position[a], found), "xyz"[a]);
+                          bp_number_text(position[a], found), "xyz"[a]);
     }
     if (mesh->vertex_count == BP_MESH_COUNT_MAX)
         return input_fail(builder->input, with_line, err, "found more than %u vertices, expected fewer",
                           BP_MESH_COUNT_MAX);
     BP_TRY(
         MAKE_ROOM(builder, mesh->positions, builder->vertex_capacity, mesh->vertex_count, "vertices", err));
-    memcpy(mesh->positions[mesh->vertex_count++], position, sizeof *mesh->positions);
+    if (!placed) {
+        BP_TRY(MAKE_ROOM(builder, builder->placeless, builder->placeless_capacity, builder->placeless_count,
+                         "vertices", err));
+        builder->placeless[builder->placeless_count++] = (uint32_t)mesh->vertex_count;
+    }
+    memcpy(mesh->positions[mesh->vertex_count++], placed ? position : nowhere, sizeof *mesh->positions);
     return BP_OK;
 }
 
@@ -173,6 +181,7 @@ typedef struct Finish {
     size_t face_capacity, material_capacity, color_capacity;
     bool has_materials, has_colors;
     size_t crossing, first_crossing; /* polygons that cross themselves */
+    size_t placeless;                /* polygons that have a vertex without a place */
 } Finish;
 
 static BpStatus fail_polygon(const Finish *f, size_t number, BpError *err, const char *text) {
@@ -203,6 +212,19 @@ static BpStatus add_face(Finish *f, size_t number, const uint32_t *triangle, BpE
     return BP_OK;
 }
 
+static int compare_numbers(const void *a, const void *b) {
+    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x > y) - (x < y);
+}
+
+static bool lacks_place(const MeshBuilder *builder, const uint32_t *corners, size_t count) {
+    for (size_t i = 0; i < count && builder->placeless_count > 0; i++)
+        if (bsearch(&corners[i], builder->placeless, builder->placeless_count, sizeof *corners,
+                    compare_numbers) != NULL)
+            return true;
+    return false;
+}
+
 static BpStatus cut(Finish *f, size_t number, const uint32_t *corners, BpError *err) {
     BpMesh *const mesh = f->builder->mesh;
     const size_t count = f->builder->polygons[number].corner_count;
@@ -214,6 +236,10 @@ static BpStatus cut(Finish *f, size_t number, const uint32_t *corners, BpError *
                  "has vertex %" PRIu64 ", expected one of %zu vertices, counted from %" PRIu32,
                  (uint64_t)corners[i] + first, mesh->vertex_count, first);
         return fail_polygon(f, number, err, text);
+    }
+    if (lacks_place(f->builder, corners, count)) {
+        f->placeless++;
+        return BP_OK;
     }
     const PolygonResult result = polygon_cut(&f->cutter, (const double(*)[3])mesh->positions, corners, count);
     switch (result) {
@@ -275,7 +301,7 @@ static BpStatus finish_colors(const MeshBuilder *builder, MeshColors *colors, si
 
 BpStatus mesh_finish(MeshBuilder *builder, BpError *err) {
     BpMesh *const mesh = builder->mesh;
-    char number[32];
+    char number[32], faces[32];
     Finish finish = {.builder = builder, .has_materials = mesh->material_count > 0};
     BP_TRY(finish_colors(builder, &builder->vertex_colors, mesh->vertex_count, "vertex", "vertices", err));
     BP_TRY(finish_colors(builder, &builder->polygon_colors, builder->polygon_count, "face", "faces", err));
@@ -287,6 +313,12 @@ BpStatus mesh_finish(MeshBuilder *builder, BpError *err) {
     const BpStatus status = cut_all(&finish, err);
     polygon_clear(&finish.cutter);
     if (status != BP_OK) return status;
+    if (builder->placeless_count > 0)
+        mesh_note(mesh, "%s %s without a place left out, and %s face%s with %s",
+                  bp_format_whole(builder->placeless_count, number, sizeof number),
+                  builder->placeless_count == 1 ? "vertex" : "vertices",
+                  bp_format_whole(finish.placeless, faces, sizeof faces), bp_plural(finish.placeless),
+                  builder->placeless_count == 1 ? "it" : "them");
     if (mesh->face_count == 0)
         return input_fail(builder->input, false, err,
                           "found no triangle with an area above 0, expected a mesh: check what was exported");

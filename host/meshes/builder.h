@@ -13,6 +13,8 @@
 #include "particles/input.h"
 #include "particles/names.h"
 
+#include <math.h>
+
 typedef struct MeshPolygon {
     uint32_t corner_count, material; /* BP_MESH_NO_MATERIAL: none */
     uint32_t line;                   /* 0: it stands in no line */
@@ -31,6 +33,8 @@ typedef struct MeshBuilder {
     const char *path;     /* of the file; others are sought beside it */
     uint32_t first_index; /* which number the file gives to its first vertex: 0, or 1 in OBJ */
     size_t vertex_capacity;
+    uint32_t *placeless; /* the vertices of which a coordinate is NaN, rising */
+    size_t placeless_count, placeless_capacity;
     MeshColors vertex_colors, polygon_colors;
     MeshPolygon *polygons;
     size_t polygon_count, polygon_capacity;
@@ -48,7 +52,12 @@ void mesh_builder_clear(MeshBuilder *builder);
 BpStatus mesh_make_room(const Input *input, void **array, size_t *capacity, size_t count, size_t size,
                         const char *of_what, BpError *err);
 
-/* Adds a vertex. Fails on what is not finite or too large. with_line: the error names the line last taken. */
+static inline bool mesh_has_place(const double position[3]) {
+    return !isnan(position[0]) && !isnan(position[1]) && !isnan(position[2]);
+}
+/* Adds a vertex. One of which a coordinate is NaN has no place, and faces that have it are left out: depth
+ * cameras write such vertices where they see nothing. Fails on what is infinite or too large. with_line: the
+ * error names the line last taken. */
 BpStatus mesh_add_vertex(MeshBuilder *builder, const double position[3], bool with_line, BpError *err);
 /* The colour of the vertex, or of the polygon, that was added last: numbers of any scale (color_range.h), or
  * NaN for a colour that is missing. */

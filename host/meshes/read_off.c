@@ -118,7 +118,8 @@ static BpStatus read_vertex(const Off *off, uint64_t number, BpError *err) {
                           "file tells what vertices have: C is for colours, N for normals, ST for textures",
                           number, count, least, most > least ? " or one more" : "");
     for (size_t i = 0; i < count; i++)
-        if (!word_number(words[i], &values[i])) return input_wrong(off->input, words[i], "a number", err);
+        if (!word_number_or_none(words[i], &values[i]))
+            return input_wrong(off->input, words[i], "a number", err);
     BP_TRY(mesh_add_vertex(off->builder, values, true, err));
     return off->has_colors ? mesh_color_vertex(off->builder, values + first_color, true, err) : BP_OK;
 }

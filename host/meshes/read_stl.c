@@ -63,8 +63,9 @@ bool mesh_stl_is_binary(Input *input) {
 static BpStatus add_corner(Stl *stl, const double position[3], bool with_line, BpError *err) {
     const BpMesh *const mesh = stl->builder->mesh;
     const uint32_t number = (uint32_t)mesh->vertex_count;
-    uint32_t found = 0;
-    BP_TRY(weld_find(&stl->weld, (const double(*)[3])mesh->positions, position, number, &found, err));
+    uint32_t found = number;
+    if (mesh_has_place(position)) /* others are equal to none */
+        BP_TRY(weld_find(&stl->weld, (const double(*)[3])mesh->positions, position, number, &found, err));
     if (found == number)
         BP_TRY(mesh_add_vertex(stl->builder, position, with_line, err));
     else
@@ -161,7 +162,7 @@ static BpStatus read_facet(Stl *stl, BpError *err) {
         if (!is_word(word, "vertex")) return input_wrong(stl->input, word, "vertex or endloop", err);
         for (int a = 0; a < 3; a++) {
             BP_TRY(need_word(stl, &word, "three numbers behind vertex", err));
-            if (!word_number(word, &position[a]))
+            if (!word_number_or_none(word, &position[a]))
                 return input_wrong(stl->input, word, "three numbers behind vertex", err);
         }
         BP_TRY(add_corner(stl, position, true, err));
