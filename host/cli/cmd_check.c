@@ -105,9 +105,18 @@ static BpStatus check_line(const BpCommandLine *line, BpError *err) {
                        "ballpark check: missing SCENE (or --suite); see `ballpark help check`");
     if (!line->bits && line->samples_per_pixel == 1)
         return bp_fail(err, BP_ERR_USAGE, "a check needs at least 2 samples per pixel to measure noise");
-    if (line->json != NULL) BP_TRY(bp_line_check_output(line, line->json, err));
-    if (line->junit != NULL) BP_TRY(bp_line_check_output(line, line->junit, err));
     return BP_OK;
+}
+
+/* One that cannot be written is not tried again; the other then reports that. */
+static BpStatus check_documents(Session *session, BpError *err) {
+    const BpCommandLine *line = session->line;
+    const BpStatus json = line->json != NULL ? bp_line_check_output(line, line->json, err) : BP_OK;
+    const BpStatus junit =
+        line->junit != NULL ? bp_line_check_output(line, line->junit, json == BP_OK ? err : NULL) : BP_OK;
+    session->json_written = json != BP_OK;
+    session->junit_written = junit != BP_OK;
+    return json != BP_OK ? json : junit;
 }
 
 static BpStatus find_map_format(Session *session, BpError *err) {
@@ -607,7 +616,8 @@ static void write_failure(const Session *session, BpStatus status, const BpError
 BpStatus bp_command_check(const BpCommandLine *line, BpError *err) {
     Session session = {.line = line};
     BP_TRY(check_line(line, err));
-    const BpStatus status = line->bits ? check_bits(&session, err) : check_all(&session, err);
+    BpStatus status = check_documents(&session, err);
+    if (status == BP_OK) status = line->bits ? check_bits(&session, err) : check_all(&session, err);
     write_failure(&session, status, err);
     bp_device_survey_clear(&session.survey);
     bp_suite_clear(&session.suite);

@@ -111,6 +111,22 @@ class Documents(cli.ProgramTest):
         self.fail_with(1, "check", "s.json", "--junit", "x.xml", "--no-clobber", says="x.xml")
         self.assertEqual(self.read("x.xml").decode(), OLD["x.xml"])
 
+    def test_one_that_cannot_be_written(self):
+        """The other reports that, and is written unless it must not be."""
+        for words, name in ((["s.json"], "s.json"), (["--suite"], "agreement"), (["--bits"], "bits")):
+            self.write("x.xml", OLD["x.xml"])
+            self.fail_with(1, "check", *words, "--junit", "x.xml", "--json", "none/x.json", says="none/x.json")
+            (case,) = xml.fromstring(self.read("x.xml")).findall("testsuite/testcase")
+            self.assertEqual((case.get("name"), case.find("error").get("type")), (name, "file error"))
+            self.assertIn("none/x.json", case.find("error").get("message"))
+            self.write("x.json", OLD["x.json"])
+            self.fail_with(1, "check", *words, "--junit", "none/x.xml", "--json", "x.json", says="none/x.xml")
+            self.assertIn("none/x.xml", json.loads(self.read("x.json"))["error"]["message"])
+        self.fail_with(1, "check", "s.json", "--junit", "none/x.xml", "--json", "none/x.json", says="none/x.json")
+        self.write("x.xml", OLD["x.xml"])
+        self.fail_with(1, "check", "s.json", "--junit", "x.xml", "--json", "none/x.json", "--no-clobber")
+        self.assertEqual(self.read("x.xml").decode(), OLD["x.xml"])
+
     def test_standard_output(self):
         result = self.run_program("check", "s.json", "--junit", "-")
         self.assertEqual(result.returncode, 5)
