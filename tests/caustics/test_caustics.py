@@ -2,6 +2,12 @@
 """Light through balls of glass and off mirrors, sampled: closed forms, and the same mean as by chance.
 
 usage: test_caustics.py PROGRAM SOURCE_DIR [--deep | CASE...]
+       test_caustics.py PROGRAM SOURCE_DIR --kept-chance CASE...     takes what chance finds from by_chance.json
+       test_caustics.py PROGRAM SOURCE_DIR --keep-chance CASE...     writes it there
+
+Where chance is the judge, most of the time goes into its pictures, and they are the same bits each time. Whoever changes only how
+directions are sampled, as known bugs do (tests/mutants), takes the means from the file. Otherwise they are found anew, and must be
+those of the file.
 
 A sun of a twentieth of a degree stands in the zenith, and a ball above a matte floor. Rays are parallel, so each circle of them,
 of impact parameter b, falls on a circle of the floor of radius x(b), and the floor's irradiance is that of the sun times the
@@ -15,8 +21,10 @@ import statistics
 import sys
 import tempfile
 
-from program_cases import picture, run_cases
+from program_cases import OPTIONS, picture, run_cases
 from pfm import read_pfm
+
+KEPT = os.path.join(sys.argv[2], "tests/caustics/by_chance.json")
 
 HALF = 0.05  # degrees
 # The floor is a sphere of a radius that, like the camera's height above it, single precision holds exactly: its place matters.
@@ -263,7 +271,7 @@ def same_seen(what, ball, lens, lamp, sun, spp):
     scene = room(ball, lamp, 4, sun=sun, second=MIRROR)
     scene["materials"]["floor"] = BLACK
     scene["camera"].update({"vfov": 24, "defocus_angle": lens, "focus_dist": 4})
-    return same(what, scene, spp)
+    return same("seen: " + what, scene, spp)
 
 
 def same_glint_in_a_mirror():
@@ -303,21 +311,35 @@ def room(ball, lamp, depth, floor=None, sun=None, second=None):
             "spheres": spheres}
 
 
-def pairs(scene, spp, seeds=8):
-    """How many standard errors the means with and without lie apart, of pictures with independent seeds."""
-    found = {}
-    for word in ("off", "on"):
-        means = []
-        for seed in range(seeds):
-            numbers = read_pfm(picture(scene, "--spp", str(spp), "--seed", str(seed + (1000 if word == "on" else 0)), "--caustics", word))[2]
-            means.append(sum(numbers) / len(numbers))
-        found[word] = statistics.mean(means), statistics.stdev(means) / math.sqrt(seeds)
-    (a, da), (b, db) = found["off"], found["on"]
-    return (b - a) / math.hypot(da, db), math.hypot(da, db) / a
+def by_chance(name, means):
+    """The mean of what means() returns, one of each seed, and its standard error; or what the file has of this name."""
+    with open(KEPT, encoding="utf-8") as file:
+        kept = json.load(file)
+    if "--kept-chance" in OPTIONS:
+        return kept[name]
+    found = mean_of(means())
+    if "--keep-chance" in OPTIONS:
+        kept[name] = found
+        with open(KEPT, "w", encoding="utf-8") as file:
+            file.write(json.dumps(kept, indent=1, sort_keys=True) + "\n")
+    assert all(map(math.isclose, found, kept[name])), f"{name}: {found} by chance, {KEPT} has {kept[name]}; --keep-chance writes it anew"
+    return found
+
+
+def mean_of(means):
+    return [statistics.mean(means), statistics.stdev(means) / math.sqrt(len(means))]
 
 
 def same(name, scene, spp, seeds=8):
-    z, error = pairs(scene, spp, seeds)
+    """The means with and without, of pictures with independent seeds, are a few of their standard errors apart."""
+    def means(word, first):
+        for seed in range(first, first + seeds):
+            numbers = read_pfm(picture(scene, "--spp", str(spp), "--seed", str(seed), "--caustics", word))[2]
+            yield sum(numbers) / len(numbers)
+
+    a, da = by_chance(name, lambda: list(means("off", 0)))
+    b, db = mean_of(list(means("on", 1000)))
+    z, error = (b - a) / math.hypot(da, db), math.hypot(da, db) / a
     assert abs(z) < 4, f"{name}: {z:+.1f} standard errors of {error:.2%}"
     assert error < 0.01, f"{name}: only known to {error:.2%}"
     return f"{z:+.1f} standard errors of {error:.2%}"
@@ -361,8 +383,8 @@ def from_the_image(seeds=8):
     for height, x, half in ((1.1, 0.0, 1.5), (1.1, 0.02, 1.5), (1.1, 0.08, 3), (1.1, 0.12, 1.5), (1.3, 0.01, 1.5)):
         scene = document(glass(fresnel="exact"), height, [x, 0.1, 6], [x, 0, 0], 6,
                          [{"direction": [0, 1, 0], "half_angle": half, "radiance": [100] * 3}])
-        by_chance = [mean(scene, 8192, "--seed", str(seed), "--caustics", "off")[0] for seed in range(seeds)]
-        wanted, error = statistics.mean(by_chance), statistics.stdev(by_chance) / math.sqrt(seeds)
+        wanted, error = by_chance(f"floor at {height}, {x}", lambda scene=scene: [
+            mean(scene, 8192, "--seed", str(seed), "--caustics", "off")[0] for seed in range(seeds)])
         drawn = mean(scene, 8192, "--seed", str(seeds))[0]
         found.append(f"{height}, {x}: {drawn / wanted - 1:+.2%} of {error / wanted:.2%}")
         assert error < 0.006 * wanted, found[-1]
@@ -428,4 +450,4 @@ CASES = [on_axis, across, what_surfaces_let_through, off_a_mirror, cut_by_depth,
 DEEP_CASES = [claims, from_the_image, same_through_glass, same_off_a_mirror, same_of_a_disc, same_glint_in_a_mirror, same_bits, glint_across_pixels, same_glints,
               same_rough, same_facets, near_lamp, near_lamp_off_a_mirror, two_lamps, two_balls, same_deep_cases]
 
-sys.exit(run_cases(CASES, DEEP_CASES))
+sys.exit(run_cases(CASES, DEEP_CASES, ("--kept-chance", "--keep-chance")))

@@ -86,7 +86,7 @@ def caustic_energy(*names):
 
 def caustics(*names):
     """Cases of tests/caustics/test_caustics.py."""
-    return Script("tests/caustics/test_caustics.py", names, "9 caustics")
+    return Script("tests/caustics/test_caustics.py", ("--kept-chance", *names), "9 caustics")
 
 
 def mesh_scenes(*names):

@@ -13,7 +13,8 @@ import subprocess
 import sys
 import tempfile
 
-PROGRAM, ONLY = sys.argv[1], sys.argv[3:]
+PROGRAM, ONLY = sys.argv[1], [word for word in sys.argv[3:] if not word.startswith("--")]
+OPTIONS = set(sys.argv[3:]) - set(ONLY)
 
 
 def run(*arguments, code=0):
@@ -42,12 +43,12 @@ def effects(document):
     return re.sub(" +", " ", with_file(document, lambda path: run("explain", path, "--wide").stdout.decode()))
 
 
-def run_cases(cases, deep_cases):
-    """Runs those that the command line asks for; returns the exit code."""
+def run_cases(cases, deep_cases, options=()):
+    """Runs those that the command line asks for; returns the exit code. `options`: that a test has beside --deep."""
     known = {case.__name__: case for case in cases + deep_cases}
-    if unknown := set(ONLY) - known.keys() - {"--deep"}:
-        sys.exit(f"no such case: {', '.join(sorted(unknown))}")
-    chosen = deep_cases if ONLY == ["--deep"] else [known[name] for name in ONLY] if ONLY else cases
+    if unknown := (set(ONLY) - known.keys()) | (OPTIONS - {"--deep", *options}):
+        sys.exit(f"no such case or option: {', '.join(sorted(unknown))}")
+    chosen = deep_cases if "--deep" in OPTIONS else [known[name] for name in ONLY] if ONLY else cases
     failed = False
     for case in chosen:
         try:
