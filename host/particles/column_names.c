@@ -91,6 +91,19 @@ bool column_find_color(const char *const *names, size_t count, int place[3]) {
     return false;
 }
 
+const char *column_single_color(const char *const *names, size_t count) {
+    /* The last is the first coefficient of a Gaussian splat's colour. */
+    static const char *const words[] = {"color",    "colour",   "rgb", "rgba", "colorhex",
+                                        "hexcolor", "colorrgb", "hex", "fdc0"};
+    char name[NAME_SIZE];
+    for (size_t i = 0; i < count; i++) {
+        simplify(names[i], false, name);
+        for (size_t w = 0; w < COUNT(words); w++)
+            if (strcmp(name, words[w]) == 0) return names[i];
+    }
+    return NULL;
+}
+
 void column_unit(const char *name, char unit[COLUMN_UNIT_SIZE]) {
     const char *at = unit_at(name);
     unit[0] = '\0';

@@ -21,6 +21,9 @@ int column_named(const char *const *names, size_t count, const char *wanted);
 size_t column_find_places(const char *const *names, size_t count, int place[3]);
 /* The columns of red, green and blue; false unless all three are there and once. */
 bool column_find_color(const char *const *names, size_t count, int place[3]);
+/* A column that seems to hold colours, but in a form that is not read: a name, a packed number. NULL: none.
+ */
+const char *column_single_color(const char *const *names, size_t count);
 /* The unit behind a name; "": none. */
 void column_unit(const char *name, char unit[COLUMN_UNIT_SIZE]);
 /* An angstrom in that unit; 0: no unit that is known. */

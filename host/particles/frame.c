@@ -1,4 +1,5 @@
 /* frame.c: where readers put points; see reader.h and particles.h. */
+#include "column_names.h"
 #include "reader.h"
 
 #include "base/format.h"
@@ -73,6 +74,8 @@ BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t co
     BpParticles *const p = file->out;
     free_arrays(p);
     *p = (BpParticles){.up = 1};
+    const char *const unread = column_single_color(columns, column_count);
+    bp_printable(unread != NULL ? unread : "", file->unread_color, sizeof file->unread_color);
     return BP_OK;
 }
 
@@ -248,6 +251,9 @@ BpStatus frame_end(BpParticleFile *file, BpError *err) {
         bp_particles_note(p, "%s point%s without a place left out",
                           bp_format_whole(file->gone_count, number, sizeof number),
                           bp_plural(file->gone_count));
+    if (p->color == NULL && file->unread_color[0] != '\0' && file->wanted_count == 0)
+        bp_particles_note(p, "no colours from \"%s\", since red, green and blue must be columns",
+                          file->unread_color);
     if (p->color == NULL) return BP_OK;
     const double scale = color_range_scale(colors);
     if (scale == 0) return color_range_fail(colors, "particle", file->input.name, err);

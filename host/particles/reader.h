@@ -36,8 +36,9 @@ struct BpParticleFile {
     size_t added;                              /* in this frame, with those that were left out */
     uint32_t *gone;                            /* the numbers of those that were left out, rising */
     size_t gone_count, gone_capacity;
-    ColorRange colors; /* of this frame; what the type says of them, the reader sets after frame_begin */
-    void *state;       /* of the format's reader, freed with the file */
+    char unread_color[32]; /* a column of this frame that seems to hold colours; "" */
+    ColorRange colors;     /* of this frame; what the type says of them, the reader sets after frame_begin */
+    void *state;           /* of the format's reader, freed with the file */
 };
 
 /* One particle. Texts may be NULL and are copied; those of BP_PARTICLE_NAME_SIZE bytes and more are

@@ -346,6 +346,17 @@ class Csv(TableTest):
                 found = self.colours("a.csv", f"x,y,z,{header}\n0,0,0,{one}{alpha}\n9,9,9,{two}{alpha}\n", [light[:3], light[3:]], note)
                 self.assertEqual(found["radii"], [], header)
 
+    def test_colours_in_one_column(self):
+        """Names, packed numbers and coefficients of splats: a note, unless red, green and blue are there, or a column is the colour."""
+        says = 'no colours from "{}", since red, green and blue must be columns'
+        for column, value in (("color", "#ff0000"), ("Colour", "red"), ("rgb", "16711680"), ("RGBA", "ff0000ff"), ("hex_color", "ff0000"), ("f_dc_0", "1.5")):
+            self.assertEqual(self.of("a.csv", f"x,y,z,{column}\n1,2,3,{value}\n")["notes"], says.format(column))
+            self.assertEqual(self.of("a.csv", f"x,y,z,{column},r,g,b\n1,2,3,{value},1,0,0\n")["notes"], SHARES)
+            self.assertEqual(self.of("a.csv", f"x,y,z,{column}\n1,2,3,{value}\n", 0, "x")["notes"], "")
+        self.assertEqual(self.of("a.ply", PLY % (1, "property float f_dc_0\n") + "1 2 3 4\n")["notes"], says.format("f_dc_0"))
+        self.assertEqual(self.of("a.xyz", "1\nProperties=species:S:1:pos:R:3:rgb:I:1\nC 1 2 3 4\n")["notes"], says.format("rgb"))
+        self.assertEqual(self.of("a.csv", "x,y,z,colorless,hexagonal\n1,2,3,4,5\n")["notes"], "")
+
     def test_colours_that_are_none(self):
         rows = "x,y,z,r,g,b\n0,0,0,%s\n1,1,1,0,0,0\n"
         self.refuse("a.csv", rows % "-1,0,0", ":2:", "red: found -1")
