@@ -27,8 +27,11 @@ BP_WORDS(Format, static ReadMesh *const readers, READERS);
 static const struct {
     const char *name, *ending, *beginning;
 } foreign[] = {
-    {"glTF", ".gltf", NULL},     {"binary glTF", ".glb", "glTF"}, {"FBX", ".fbx", "Kaydara FBX Binary"},
-    {"3D Studio", ".3ds", NULL}, {"COLLADA", ".dae", NULL},       {"Blender", ".blend", "BLENDER"}};
+    {"glTF", ".gltf", NULL},      {"binary glTF", ".glb", "glTF"}, {"FBX", ".fbx", "Kaydara FBX Binary"},
+    {"3D Studio", ".3ds", NULL},  {"COLLADA", ".dae", NULL},       {"Blender", ".blend", "BLENDER"},
+    {"3MF", ".3mf", NULL},        {"USD", ".usd", NULL},           {"USD", ".usda", "#usda "},
+    {"USD", ".usdc", "PXR-USDC"}, {"USD", ".usdz", NULL},          {"STEP", ".step", "ISO-10303-21"},
+    {"STEP", ".stp", NULL},       {"VRML", ".wrl", "#VRML "},      {"X3D", ".x3d", NULL}};
 enum { FOREIGN_COUNT = sizeof foreign / sizeof *foreign };
 
 static bool has_ending(const char *path, const char *ending) {

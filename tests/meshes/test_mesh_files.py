@@ -503,11 +503,13 @@ class Names(MeshTest):
     def test_foreign(self):
         """Other formats are refused by name, whatever else is in them, and a scene document is no mesh."""
         for ending, name in ((".gltf", "glTF"), (".glb", "glTF"), (".fbx", "FBX"), (".3ds", "3D Studio"), (".dae", "COLLADA"),
-                             (".blend", "Blender")):
+                             (".blend", "Blender"), (".3mf", "3MF"), (".usd", "USD"), (".usda", "USD"), (".usdc", "USD"), (".usdz", "USD"),
+                             (".step", "STEP"), (".stp", "STEP"), (".wrl", "VRML"), (".x3d", "X3D")):
             self.refuse("a" + ending, "{}", name, "export it as PLY, OBJ, STL or OFF", mesh=True)
         self.refuse("a", b"glTF\2\0\0\0", "binary glTF", mesh=True)
         self.refuse("a", b"Kaydara FBX Binary  \0", "FBX", mesh=True)
-        self.refuse("a", b"BLENDER-v293", "Blender", mesh=True)
+        for beginning, name in ((b"BLENDER-v293", "Blender"), (b"#usda 1.0\n", "USD"), (b"ISO-10303-21;\n", "STEP"), (b"#VRML V2.0 utf8\n", "VRML")):
+            self.refuse("a", beginning, name, mesh=True)
         self.refuse("a.obj", '{"spheres": []}', "no format that is known", mesh=False)
         self.refuse("a.txt", "hello", "no format that is known", mesh=False)
         self.refuse("a.txt", "CUTOFF 3", "no format that is known", mesh=False)
