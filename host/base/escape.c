@@ -13,7 +13,7 @@ static size_t decode(const char *text, uint32_t *character) {
     if (length == 0 || first >= 0xf8) return 0;
     *character = length == 1 ? first : first & (0xffu >> (length + 1));
     for (size_t i = 1; i < length; i++) {
-        const unsigned char next = (unsigned char)text[i]; /* the end of the text is no such byte either */
+        const unsigned char next = (unsigned char)text[i]; /* neither is the end of the text */
         if ((next & 0xc0u) != 0x80) return 0;
         *character = *character << 6 | (next & 0x3fu);
     }
@@ -21,8 +21,8 @@ static size_t decode(const char *text, uint32_t *character) {
     return *character >= 0xd800 && *character <= 0xdfff ? 0 : length;
 }
 
-/* Control characters of both sets (ISO 6429), and those that turn the direction of writing (Unicode, UAX 9).
- */
+/* Control characters of both sets (ISO 6429), and those that change the direction of writing (Unicode, UAX
+ * 9). */
 static bool is_control(uint32_t c) {
     return c < 0x20 || (c >= 0x7f && c <= 0x9f) || (c >= 0x202a && c <= 0x202e) ||
            (c >= 0x2066 && c <= 0x2069);

@@ -7,7 +7,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-/* jansson's functions take no context, so what they note has no other place. It is never taken back. */
+/* Global, since jansson's allocation functions take no context. It is never reset. */
 static atomic_bool refused;
 
 static void *allocate(size_t size) {
@@ -35,7 +35,7 @@ json_t *bp_json_load(const char *text, size_t length, size_t flags, json_error_t
 }
 
 char *bp_json_quote(const char *text, bool *no_memory) {
-    const int before = errno; /* may say why a stream has failed */
+    const int before = errno; /* may hold the reason why a stream has failed */
     errno = 0;
     json_t *value = json_string(text);
     char *quoted = value != NULL ? json_dumps(value, JSON_ENCODE_ANY) : NULL;

@@ -80,7 +80,7 @@ static const Known known[] = {{{BP_FILE_SUMS, "the sums of a render (.bpa)"}, BE
                               {{BP_FILE_SOURCE, "the source text of a program"}, NAMED(".h")},
                               {{BP_FILE_SOURCE, "the source text of a program"}, NAMED(".py")}};
 
-/* What is no ending, such as POSCAR, is all of a name or its beginning: POSCAR_relaxed. */
+/* A name without a dot, such as POSCAR, matches a whole name or its beginning: POSCAR_relaxed. */
 static bool has_ending(const char *name, const char *ending) {
     const char *const slash = strrchr(name, '/'), *const base = slash != NULL ? slash + 1 : name;
     const size_t length = strlen(base), size = strlen(ending);
@@ -114,7 +114,7 @@ const char *bp_known_file_remedy(const BpKnownFile *file) {
     case BP_FILE_IMAGE:
         return "";
     case BP_FILE_GZIP:
-        return " or particles whose format the name tells, as in FILE.xyz.gz; rename it, or unpack it first";
+        return " or particles whose name shows the format, as in FILE.xyz.gz; rename it, or unpack it first";
     case BP_FILE_PACKED:
         return "; unpack it first";
     case BP_FILE_PARTICLES:

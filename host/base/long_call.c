@@ -7,7 +7,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-/* How often a waiting thread looks at the clock, and asks whether to stop. */
+/* How often a waiting thread checks the clock and polls stop(). */
 #define LOOK_NS 100000000
 #define ASK_NS 2000000
 
@@ -21,7 +21,7 @@ struct BpLongCall {
     unsigned users; /* the caller and the thread; the last one to leave frees this */
 };
 
-/* The process that such threads belong to has no other place to say it. */
+/* Global, since hung threads belong to the process. */
 static atomic_uint hanging;
 
 static void leave(BpLongCall *call, bool done) {

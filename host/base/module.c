@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The bare name where there is none: then the loader looks, and says what it has not found. */
+/* Without a folder, the bare name: then the loader searches, and reports a failure. */
 static void find(const BpModuleName *name, char *path, size_t size) {
     static const char *const folders[] = {"", BALLPARK_MODULE_FOLDER "/"};
     const char *named = getenv(name->variable);
@@ -39,7 +39,7 @@ BpStatus bp_module_load(const BpModuleName *name, const void **interface, BpErro
     if (module == NULL) {
         const BpStatus status =
             bp_fail(err, BP_ERR_USAGE, "%.300s cannot be loaded: %.400s", path, dlerror());
-        (void)dlerror(); /* the C library frees the text when it is asked once more */
+        (void)dlerror(); /* the C library frees the text at the next call */
         return status;
     }
     const void *found = dlsym(module, name->symbol);

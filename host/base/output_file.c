@@ -96,8 +96,8 @@ static void sync_folder(const char *target) {
     free(folder);
 }
 
-/* Puts the finished temporary, open as `descriptor`, at its place; 0, or the errno of what failed first.
- * *left: its name, if it lies beside its place now. */
+/* Puts the finished temporary, open as `descriptor`, in place; 0, or the errno of the first failure. *left:
+ * its name, if it now lies beside the target. */
 static int put_in_place(BpOutputFile *file, int descriptor, char **left) {
     const char *target = file->target.path;
     int problem = bp_temporary_place(&file->unnamed, &file->temporary, descriptor, target, !file->new_only);

@@ -14,7 +14,7 @@
 
 static const struct Advice {
     int error_number;
-    const char *text; /* that suits everybody */
+    const char *text; /* that applies to every interface */
     BpRemedy remedy;
 } advice[] = {
     {ENOENT, "; create the folder first", BP_REMEDY_OR_OTHER_PLACE},

@@ -22,8 +22,8 @@
 
 /* ---- the names in use ------------------------------------------------------------------------------------
  *
- * Beside the flag of interrupt.c the only thing that outlives a call: a signal can come at any time, and who
- * ends the program then must know what to remove. */
+ * Global, since a signal can arrive at any time, and the thread that then ends the program needs the names to
+ * remove. */
 
 static pthread_mutex_t names_lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_once_t forks_heeded = PTHREAD_ONCE_INIT;
@@ -121,8 +121,8 @@ static int link_descriptor(int descriptor, const char *path) {
 
 /* Creates a file STEM.XXXXXX; if `descriptor` is a file without a name, gives it that name instead. Returns
  * the descriptor, or -1 and errno. mkstemp() would set mode 0600; this way the system itself applies umask
- * and default access lists. The name is noted before the lock is released, so a signal's clean-up knows it.
- */
+ * and default access lists. The name is recorded before the lock is released, so that cleaning up after a
+ * signal removes it. */
 static int make_name(const char *folder, size_t folder_length, const char *target, mode_t mode,
                      int descriptor, char **name) {
     size_t length = 0;
@@ -268,7 +268,7 @@ int bp_temporary_place(bool *unnamed, char **name, int descriptor, const char *t
         const int problem = name_beside(unnamed, name, descriptor, target);
         if (problem != 0) return problem;
     }
-    /* Once the file has a name it is finished, so a signal waits until it is in its place. */
+    /* Once the file has a name it is finished, so a signal waits until it is in place. */
     lock_names();
     int problem = replace ? 0 : claim(*name, target);
     if (problem == 0 && rename(*name, target) != 0) problem = errno;

@@ -35,8 +35,8 @@ static bool is_continuation(char c) {
     return ((unsigned char)c & 0xc0u) == 0x80u;
 }
 
-/* A message that is too long mostly contains a long path. What went wrong stands before the path, and the
- * reason and the remedy behind it, so the middle is left out. */
+/* A message that is too long usually contains a long path. The fault stands before the path, and reason and
+ * remedy behind it, so the middle is left out. */
 static void shorten(const char *text, char *out, size_t size) {
     static const char gap[] = "[...]";
     const size_t length = strlen(text);
@@ -108,7 +108,7 @@ void bp_error_attach(BpError *err, const char *text) {
     if (err == NULL || text == NULL) return;
     const size_t size = strlen(text) + 1;
     char *copy = malloc(size);
-    if (copy == NULL) return; /* the message itself still stands */
+    if (copy == NULL) return; /* the message itself is kept */
     memcpy(copy, text, size);
     free(err->attachment);
     err->attachment = copy;

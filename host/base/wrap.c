@@ -19,8 +19,8 @@ static void put(const char *text, size_t length, FILE *out) {
         if (text[i] != HANG && text[i] != PASTE) fputc(text[i], out);
 }
 
-/* Bytes up to the next place where `line` may be broken: a word, the "%" behind a number, or all of what
- * stands between backticks, so that a command stays whole. */
+/* Bytes up to the next place where `line` may be broken: behind a word, the "%" of a number, or all the text
+ * between backticks, so that a command stays whole. */
 static size_t word_length(const char *line, size_t length) {
     size_t end = 0;
     bool quoted = false;

@@ -195,7 +195,7 @@ static BpStatus end_round(BpCheck *check, BpError *err) {
     return bp_render_extend(check->render, check->target, err);
 }
 
-/* Time is up: what the last whole round says. */
+/* Time is up: the result of the last complete round. */
 static BpStatus judge_last_round(BpCheck *check, BpError *err) {
     BpCheckResult *result = &check->result;
     const Round *last = &check->last;

@@ -40,7 +40,7 @@ static void center_text(BpCanvas *canvas, uint32_t left, uint32_t width, uint32_
     bp_canvas_text(canvas, left + (width > length ? (width - length) / 2 : 0), y, 1, text, ink);
 }
 
-/* Writes below each panel what it shows, and below the third the scale of its colours. */
+/* Labels each panel, and draws the colour scale below the third. */
 static void draw_legend(BpCanvas *canvas, uint32_t panel) {
     const uint32_t last = 2 * (panel + GAP), bar = panel > 2 * GAP ? panel - 2 * GAP : 1;
     bp_canvas_fill(canvas, 0, 0, canvas->width, canvas->height, paper);

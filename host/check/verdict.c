@@ -73,10 +73,10 @@ static double variance_margin(const BpSums *sums, const Region *region, int chan
     return 3 * sqrt(variance);
 }
 
-/* The variance of a mean that may have missed what is bright and rare: with the margin, and, where the mean
- * is below the other one, larger by the square of what it lacks, as that of the missing light would be. No
- * sample of that light is brighter than `brightest`, so the mean of its squares is at most that times what
- * the mean lacks, even if not one has been found. */
+/* The variance of a mean that may have missed rare, bright light: with the margin, and, if the mean is below
+ * the other one, increased by the variance of the missing light. No sample of that light is brighter than
+ * `brightest`, so the mean of its squares is at most `brightest` times the missing mean, even if no such
+ * sample has been found. */
 static double cautious_variance(const Mean *mean, const Mean *other, double margin, double brightest) {
     if (!(other->value > mean->value)) return mean->variance + margin;
     const double lacks = mean->value > 0 ? other->value / mean->value : 1;

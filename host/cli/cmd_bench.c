@@ -41,12 +41,10 @@
 
 /* ---- the fixed scenes -------------------------------------------------------------------------------- */
 
-/* cover      the fourth edition's cover: every material, a lens
- * diffuse    the same spheres with metal and glass made matte: short paths, one kind of material
- * glass      the same spheres, all glass except the ground: long paths that diverge
- * field-N    N matte spheres of random colours in a cube, seen from outside; similar at any N, so that the
- *            figures show what the number of spheres costs
- * ball-N     a matte ball with bumps, of N triangles */
+/* cover   the fourth edition's cover: every material, a lens diffuse   the same spheres with metal and glass
+ * made matte: short paths, one kind of material glass   the same spheres, all glass except the ground: long
+ * paths that diverge field-N   N matte spheres of random colours in a cube, seen from outside; similar at any
+ * N, so that the figures show what the number of spheres costs ball-N   a matte, bumpy ball of N triangles */
 enum { GRID = 11, SEED = 1, WIDTH = 400, SAMPLES = 64 };
 
 static const char field_document[] =
@@ -182,9 +180,10 @@ static BpStatus write_fixed_scene(const BpCommandLine *line, const char *name, c
 
 /* ---- one timed run ----------------------------------------------------------------------------------- */
 
-/* What is measured in each round, and its name in the document. Times are wall-clock seconds unless they say
- * otherwise. They are of a stretch of tracing, begun when caches, clocks and the size of chunks had settled.
- * CPU: of all threads of this process; device: for a CPU device, the processor time that tracing took. */
+/* The measurements of each round, and their names in the document. Times are wall-clock seconds unless stated
+ * otherwise. They are of a stretch of tracing that began when caches, clocks and the size of chunks had
+ * settled. CPU: of all threads of this process; device: for a CPU device, the processor time that tracing
+ * took. */
 #define MEASURE_LIST(X)                                                                                      \
     X(LOAD, "load_seconds")                                                                                  \
     X(TREE, "tree_seconds")                                                                                  \

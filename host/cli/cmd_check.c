@@ -2,8 +2,8 @@
  *
  * In:    a scene, or the agreement scenes; devices.   Out: whether kernel and reference agree, by table,
  * documents, a picture, and an exit code.
- * Knows: the order of things: scenes, devices, checks, documents.
- * Does not know: how a device is asked without trusting it (cli/process/device_survey.h,
+ * Knows: the order of the steps: scenes, devices, checks, documents.
+ * Does not know: how a device is used without trusting it (cli/process/device_survey.h,
  * cli/conform/device_items.h), what documents look like (cli/conform/check_report.h,
  * cli/conform/check_junit.h). */
 #include "commands.h"
@@ -48,11 +48,11 @@ typedef struct Session {
     const BpCommandLine *line;
     BpSuite suite;      /* of --suite and --bits */
     BpScene *scene;     /* else the one of the command line */
-    BpCheckItem *items; /* what is checked */
+    BpCheckItem *items; /* the scenes to be checked */
     size_t item_count;
     json_t *earlier; /* Optional. The document of --against. */
     BpDeviceSurvey survey;
-    BpDeviceInfo *devices; /* those that are checked */
+    BpDeviceInfo *devices; /* the devices to be checked */
     size_t device_count;
     BpFormat map_format;
     json_t *scenes;                /* cli/conform/check_report.h */
@@ -93,7 +93,7 @@ static BpStatus check_line(const BpCommandLine *line, BpError *err) {
     const char *own = line->bits ? "--bits" : "--suite";
     if (line->bits)
         BP_TRY(refuse(line, "--bits", of_pictures, sizeof of_pictures / sizeof *of_pictures,
-                      "the recorded pictures say what is rendered", err));
+                      "the recorded pictures determine what is rendered", err));
     if (line->suite)
         BP_TRY(
             refuse(line, "--suite", of_one, 1, "it is a picture of one scene; check that scene alone", err));
@@ -207,7 +207,7 @@ static void map_name(const char *map, unsigned device, char *name, size_t size) 
     snprintf(name, size, "%.*s-%u%s", (int)stem, map, device, dot != NULL ? dot : "");
 }
 
-/* The devices' own maps must be told apart from the other files, like the map that the command line names. */
+/* The devices' maps must not be any of the other files, as for the map that the command line names. */
 static BpStatus check_map_names(const Session *session, BpError *err) {
     BpCommandLine line = *session->line;
     char name[4096];
@@ -423,7 +423,7 @@ static BpStatus conclude(Session *session, const json_t *against, BpError *err) 
         bp_error_attach(err, error->attachment);
         return status;
     }
-    if (counts.failed > 0 && error->code == BP_ERR_MEMORY) /* which says nothing about a device */
+    if (counts.failed > 0 && error->code == BP_ERR_MEMORY) /* which is not the fault of a device */
         return bp_fail(err, BP_ERR_MEMORY, "%s: not every check could be made: %s", name, error->message);
     if (counts.failed > 0)
         return bp_fail(err, BP_ERR_BROKEN_DEVICE, "%s: a device failed before it could be checked", name);
@@ -449,7 +449,7 @@ static BpStatus check_all(Session *session, BpError *err) {
     BpStatus status = BP_OK;
     BP_TRY(find_map_format(session, err));
     if (line->against != NULL) BP_TRY(bp_check_against_read(line->against, &session->earlier, err));
-    if (wants_documents(line)) bp_interrupt_catch(); /* they say that it was interrupted */
+    if (wants_documents(line)) bp_interrupt_catch(); /* they report the interruption */
     BP_TRY(load_items(session, err));
     bp_interrupt_catch();
     if (bp_interrupted()) return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted before anything was checked");
@@ -596,8 +596,8 @@ static BpStatus check_bits(Session *session, BpError *err) {
 
 /* ---- the command -------------------------------------------------------------------------------------- */
 
-/* A check that has failed replaces the documents of an earlier one, too. After an error of the command line
- * it is not known what they may replace. */
+/* A failed check replaces the documents of an earlier one, too; but not after an error of the command line,
+ * since then the files that they may replace are unknown. */
 static void write_failure(const Session *session, BpStatus status, const BpError *err) {
     const BpCommandLine *line = session->line;
     if (status == BP_OK || status == BP_ERR_USAGE) return;

@@ -25,7 +25,8 @@ static void show_progress(const BpStudyProgress *progress) {
     bp_terminal_show(progress->finished ? "" : text);
 }
 
-/* Ctrl-C ends a study early; the results are those that every configuration has reached by then. */
+/* Ctrl-C ends a study early; the results are those of the sample counts that every configuration has reached.
+ */
 static BpStatus run_study(const BpCommandLine *line, BpStudy *study, BpError *err) {
     BpStudyProgress progress = {0};
     const bool live = bp_terminal_is_live(line->quiet);
@@ -69,8 +70,8 @@ static BpStatus write_results(const BpCommandLine *line, const BpStudyResult *re
         if (files[f] != NULL && strcmp(files[f], "-") == 0) to_stdout = true;
     const Printed whole = {result, bp_study_print_page}, points = {result, bp_study_print_csv};
     BpStatus status = BP_OK;
-    /* A study takes minutes: a file that cannot be written keeps none of the others, nor the table, from
-     * being written. What is told is the first failure. */
+    /* A study takes minutes: a file that cannot be written does not keep the others, or the table, from being
+     * written. The first failure is reported. */
     if (line->output != NULL) status = bp_line_write(line, line->output, print_part, &whole, err);
     if (line->csv != NULL) {
         const BpStatus written =

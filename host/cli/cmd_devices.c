@@ -1,8 +1,8 @@
 /* cmd_devices.c: `ballpark devices`.
  *
  * In:    nothing.   Out: a table, or JSON, of every OpenCL device, and the drivers that crash or hang.
- * Knows: BpDeviceInfo, what calibrations have found, tables on a terminal.   Does not know: how a driver that
- * may be broken is asked (cli/process/device_survey.h). */
+ * Knows: BpDeviceInfo, calibrations, tables on a terminal.   Does not know: how a driver that may be broken
+ * is tried (cli/process/device_survey.h). */
 #include "commands.h"
 
 #include "base/escape.h"
@@ -126,7 +126,7 @@ BpStatus bp_command_devices(const BpCommandLine *line, BpError *err) {
     bp_interrupt_catch(); /* a signal ends the child that lists, too */
     BpStatus status = bp_device_survey(seconds, line->quiet, &survey, err), shown = BP_OK;
     if (status == BP_OK) {
-        /* The default also tells whether anything here can render; if not, its error says what to do. */
+        /* Without a default, no device can render; then its error has the remedy. */
         BpDeviceInfo chosen;
         status = bp_device_survey_find(&survey, NULL, &chosen, err);
         if (status == BP_ERR_NO_DEVICE || status == BP_ERR_BROKEN_DEVICE) status = BP_ERR_DEVICE;

@@ -1,6 +1,6 @@
 /* cmd_generate.c: `ballpark generate`.
  *
- * In:    what, how large, the seed.   Out: a scene document, or a field of spheres as PLY.
+ * In:    the generator, the size, the seed.   Out: a scene document, or a field of spheres as PLY.
  * Knows: the generators' names.       Does not know: how scenes are generated (formats/cover.c,
  * formats/field.c). */
 #include "commands.h"

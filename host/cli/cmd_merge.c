@@ -134,7 +134,8 @@ done:
     return status;
 }
 
-/* Says which samples are in no file: between those that are, and of a job that all files are shares of. */
+/* Reports the samples that are missing: gaps between the files, and the rest of a job that all files are
+ * shares of. */
 static void warn_missing(const BpCommandLine *line, const Parts *parts) {
     char text[400] = "";
     size_t used = 0, found = 0;
@@ -204,7 +205,7 @@ static BpStatus add_files(const BpCommandLine *line, const Parts *parts, BpFilm 
     return status;
 }
 
-/* Sums do not tell the backdrop's colours. */
+/* Films do not record the backdrop's colours. */
 static BpStatus check_cues(const BpCommandLine *line, const BpFilm *sum, BpError *err) {
     if (bp_result_has_cues(line) && !bp_film_has_aovs(sum))
         return bp_fail(err, BP_ERR_USAGE,
@@ -243,7 +244,7 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     warn_missing(line, &parts);
     bp_result_warn(line, sum);
     char causes[BP_INVALID_TEXT_SIZE];
-    if (sum->invalid_samples > 0) /* as of render: the file is there, but what it shows is biased */
+    if (sum->invalid_samples > 0) /* as in render: the file exists, but its picture is biased */
         status = bp_fail(
             err, BP_ERR_LIMIT,
             "%s lacks %" PRIu64 " sample%s invalid%s; `ballpark check` compares a device with the "

@@ -139,7 +139,7 @@ typedef struct Run {
     double start;  /* of the scene at hand, or of the command for the first one */
     bool has_begun;
     size_t pictures, incomplete; /* written by this rank; those of them that lack invalid samples */
-    char lack[512];              /* what the first of those lacks */
+    char lack[512];              /* the reason why the first of those cannot render */
 } Run;
 
 /* Two scenes may have the same name in different folders. */
@@ -199,7 +199,7 @@ static BpStatus open_devices(Run *run, BpError *err) {
     return BP_OK;
 }
 
-/* `resumed`: Optional. The film that the render goes on from, which decides what makes samples. */
+/* `resumed`: Optional. The film that the render continues, which determines the samples. */
 static BpStatus plan(const BpCommandLine *line, const Job *job, const BpCheckpoint *checkpoint,
                      const BpFilm *resumed, BpRenderOptions *options, BpStopRule *rule, BpError *err) {
     BP_TRY(bp_setup_options(line, job->scene, options, err));
@@ -207,7 +207,7 @@ static BpStatus plan(const BpCommandLine *line, const Job *job, const BpCheckpoi
     bp_setup_warn(line, job->scene, options->precision);
     /* Less noise in the same time on every scene that was measured: docs/ACCURACY.md. */
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options->sampler = BP_SAMPLER_SOBOL;
-    /* An error map tells spheres from sky by their depth. */
+    /* An error map distinguishes spheres from sky by depth. */
     options->features = job->file.format == BP_FORMAT_EXR || job->file.format == BP_FORMAT_BPA ||
                         job->file.error_map[0] != '\0' || checkpoint->path[0] != '\0' ||
                         bp_result_has_cues(line);
@@ -319,7 +319,7 @@ static BpStatus render_one(Run *run, const BpCommandLine *line, Job *job, BpErro
         status = write_results(line, &job->file, &work.rule, &end, &job->checkpoint, &work.preview,
                                work.render, &work.result, run->stats, err);
     if (status == BP_OK) count_picture(run, &work.result);
-    /* A rank that failed at work cannot agree with the others, who wait for something else. */
+    /* A rank that failed between exchanges cannot report to the others, which wait for another message. */
     if (!bp_comm_is_at_work(run->comm)) status = bp_comm_all_ok(run->comm, status, err);
     bp_render_destroy(&work.render);
     return status;
@@ -344,8 +344,8 @@ static void clear(Run *run) {
 
 /* ---- several pictures -------------------------------------------------------------------------------- */
 
-/* Pictures that were dealt to the ranks are all there: what went wrong on any of them, and what they have to
- * tell. The statistics of all go to rank 0, in the order of the scenes. */
+/* After the pictures of single ranks are finished: reports failures and notes of any rank. The statistics of
+ * all go to rank 0, in the order of the scenes. */
 static BpStatus gather_results(Run *run, size_t dealt, BpStatus status, BpError *err) {
     BpComm *comm = run->line.comm;
     char **texts = NULL;
@@ -421,7 +421,7 @@ static BpStatus render_scenes(Run *run, BpError *err) {
     for (size_t j = 0; j < run->count && status == BP_OK; ++j) {
         const bool alone = j < dealt;
         if (!alone || bp_ranks_is_mine(comm, j)) {
-            BpCommandLine one = run->line; /* of this scene alone, for the command that goes on with it */
+            BpCommandLine one = run->line; /* of this scene alone, for the command that continues it */
             one.operands += j;
             one.operand_count = 1;
             run->comm = alone ? NULL : comm;

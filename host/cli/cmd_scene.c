@@ -1,8 +1,8 @@
 /* cmd_scene.c: `ballpark scene`.
  *
- * In:    a scene document or a file of particles.   Out: the document of the scene that it stands for.
- * Knows: where relative paths begin in what is written.   Does not know: how documents are read and written
- * (formats/scene_load.c, formats/scene_write.c). */
+ * In:    a scene document or a file of particles.   Out: the document of its scene.
+ * Knows: the folder to which paths in the output are relative.   Does not know: how documents are read and
+ * written (formats/scene_load.c, formats/scene_write.c). */
 #include "commands.h"
 
 #include "cli/job/setup.h"
@@ -27,8 +27,7 @@ static bool same_folder(const char *from, const char *to) {
 }
 
 /* The names of images and of files of particles and meshes as seen from the folder of `to`: unchanged, below
- * that folder, or absolute.
- */
+ * that folder, or absolute. */
 static BpStatus move_files(BpScene *scene, const char *from, const char *to, BpError *err) {
     if (same_folder(from, to)) return BP_OK;
     for (size_t i = 0; i < scene->image_count; i++) BP_TRY(bp_image_move(from, to, scene->images[i], err));

@@ -1,6 +1,6 @@
 /* cmd_view.c: `ballpark view`.
  *
- * In:    a scene, the module that opens windows.   Out: a window; pictures that the person at it saves.
+ * In:    a scene, the module that opens windows.   Out: a window; pictures that its user saves.
  * Knows: which module that is, how saved pictures are named.   Does not know: how windows are opened
  * (view/window.h), what the window shows. */
 #include "commands.h"
@@ -22,7 +22,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define TARGET 0.01 /* noise at which it rests, unless --error says otherwise */
+#define TARGET 0.01 /* noise at which it stops, unless --error is given */
 
 /* ---- the module ---------------------------------------------------------------------------------------- */
 

@@ -22,7 +22,7 @@ struct BpChainEntry {
     size_t count;
 };
 
-/* The first step that meets a matte surface, or the count of steps. */
+/* The first step that hits a matte surface, or the number of steps. */
 static size_t first_matte(const BpScene *scene, const BpPathLog *path) {
     size_t i = 0;
     while (i < path->count &&
@@ -31,7 +31,7 @@ static size_t first_matte(const BpScene *scene, const BpPathLog *path) {
     return i;
 }
 
-/* The kernel's point is rounded; the one on the sphere below it is the point that it stands for. */
+/* The kernel's point is rounded; this is the nearest point on the sphere. */
 static BpChainPoint point_of(const BpScene *scene, const BpPathStep *step) {
     const BpSphere *sphere = &scene->spheres[step->sphere];
     BpChainPoint point = {.sphere = step->sphere, .scatter = scene->materials[step->material].scatter};

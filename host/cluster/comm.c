@@ -15,7 +15,7 @@
 #include <string.h>
 #include <time.h>
 
-/* Waiting asks without a pause at first, for answers that are on their way, and then in pauses that grow. */
+/* Waiting polls without a pause at first, since answers may be on their way, and then with growing pauses. */
 #define TURNS_WITHOUT_PAUSE 100u
 #define PAUSE_NS_MIN 20000
 #define PAUSE_NS_MAX 2000000
@@ -25,7 +25,7 @@ struct BpComm {
     BpPlace place;
     uint32_t cores;
     double waiting, adding; /* seconds */
-    BpStatus common_status; /* BP_OK, or what a rank has failed with */
+    BpStatus common_status; /* BP_OK, or the status of the rank that failed */
     bool at_work, has_notified, was_notified;
 };
 
@@ -73,7 +73,7 @@ BpStatus bp_comm_allreduce_or(BpComm *comm, uint32_t *bits, BpError *err) {
     return comm != NULL ? wait_for(comm, comm->transport->allreduce_or(bits), err) : BP_OK;
 }
 
-/* Adding keeps a core busy while it waits, so ranks meet first. */
+/* Adding keeps a core busy while it waits, so ranks synchronise first. */
 static BpStatus add(BpComm *comm, void *numbers, size_t count, uint32_t width, BpError *err) {
     uint32_t none = 0;
     if (comm == NULL) return BP_OK;
@@ -241,7 +241,7 @@ void bp_comm_times(const BpComm *comm, double *waiting, double *adding) {
 
 typedef struct Cores {
     uint32_t node;
-    cpu_set_t own; /* those that the rank may use */
+    cpu_set_t own; /* the cores that the rank may use */
 } Cores;
 
 /* Each core counts for a rank by the number of ranks of its machine that may use it: launchers bind ranks to
@@ -287,8 +287,7 @@ static uint64_t hash_arguments(char *const *arguments) {
     return hash;
 }
 
-/* Ranks that were told different things cannot share a picture: a script may start a render of its own on
- * each. */
+/* Ranks with different arguments cannot share a picture: a script may start a separate render on each. */
 static BpStatus check_arguments(BpComm *comm, char *const *arguments, BpError *err) {
     const uint64_t own = hash_arguments(arguments);
     uint64_t first = own;

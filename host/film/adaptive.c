@@ -20,7 +20,7 @@ static uint64_t level_samples(uint32_t level) {
     return (uint64_t)BP_ADAPTIVE_FIRST << level;
 }
 
-/* The last tile of a row or column takes what is left over. */
+/* The last tile of a row or column takes the remainder. */
 static uint32_t tile_of(uint32_t place, uint32_t tiles) {
     const uint32_t tile = place / TILE_SIDE;
     return tile < tiles ? tile : tiles - 1;
@@ -221,7 +221,7 @@ bool bp_adaptive_pass(BpAdaptive *adaptive, BpAdaptivePass *pass) {
     return true;
 }
 
-/* A pass over those halves of the lowest level that want more. */
+/* A pass over the halves of the lowest level that need more samples. */
 static bool begin_pass(BpAdaptive *adaptive, BpAdaptivePass *pass) {
     uint32_t lowest = BP_ADAPTIVE_LEVELS_MAX;
     for (uint32_t half = 0; half < adaptive->halves; ++half)

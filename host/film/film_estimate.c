@@ -27,8 +27,8 @@ double bp_film_sum(const BpFilm *film, size_t index) {
 typedef struct PixelEstimate {
     double mean[4];
     double squared_error[4]; /* of the mean; NaN where unknown */
-    double expected;         /* luminance, with what has not been found yet */
-    double unseen;           /* the part of the luminance's squared error that stands for that */
+    double expected;         /* luminance, with light that has not been found yet */
+    double unseen;           /* the part of the luminance's squared error for that light */
     uint64_t samples;
 } PixelEstimate;
 
@@ -65,11 +65,10 @@ static void estimate_without(const Replicates *replicates, unsigned left_out, do
 
 #define ALL_REPLICATES UINT_MAX /* none is left out */
 
-/* Adds the variance of light that the pixel's samples may not have found. If the sums of the replicates are
- * so far apart that one of them has found it, the variance that they show is the same one over again: then
- * those behind the brightest tell what the pixel's noise is without it, a little too low, since noise too
- * has a brightest replicate; `rest_factor` makes up for that (within a tenth, for normal noise and 3 to 8 of
- * them). */
+/* Adds the variance of light that the pixel's samples may not have found. If the replicates differ so much
+ * that one of them has found it, their variance already contains it: then the replicates other than the
+ * brightest give the pixel's noise without it, slightly too low, since noise too has a brightest replicate;
+ * `rest_factor` compensates for that (within a tenth, for normal noise and 3 to 8 replicates). */
 static void add_unseen(const BpUnseen *unseen, const BpUnseenWeights *weights, size_t pixel,
                        const Replicates *replicates, PixelEstimate *estimate) {
     const BpUnseenPixel *light = &unseen->pixels[pixel];
@@ -99,7 +98,7 @@ static void add_unseen(const BpUnseen *unseen, const BpUnseenWeights *weights, s
     estimate->expected += weight * (mean - (found ? estimate->mean[3] - rest_mean[3] : 0));
 }
 
-/* `weights` may be NULL: then the errors are those of what the samples have found. */
+/* `weights` may be NULL: then the errors are those of the light that the samples have found. */
 static PixelEstimate estimate_pixel(const BpFilm *film, const BpUnseenWeights *weights, size_t pixel) {
     PixelEstimate estimate = {.samples = 0};
     const size_t k_count = film->replicates;
@@ -237,7 +236,7 @@ BpStatus bp_film_check_valid(const BpFilm *film, BpError *err) {
     char text[BP_INVALID_TEXT_SIZE];
     return bp_fail(err, BP_ERR_LIMIT,
                    "%" PRIu64 " of %" PRIu64 " samples are invalid%s, so they show nothing of the scene: its "
-                   "numbers may be too large or too small for %s precision, and ballpark check tells more",
+                   "numbers may be too large or too small for %s precision, and `ballpark check` shows more",
                    film->invalid_samples, film->invalid_samples + valid, bp_film_invalid_causes(film, text),
                    bp_precision_names[film->precision]);
 }

@@ -250,8 +250,8 @@ static BpStatus read_numbers(const BpFilmParts *parts, BpFilmSource *source, BpF
     return bp_film_source_end(source, err);
 }
 
-/* Numbers that make no sense mostly come from damage. So if the checksum at the end of the file is wrong, the
- * error says that instead. */
+/* Invalid numbers mostly come from damage. So if the checksum at the end of the file is wrong, the error
+ * reports that instead. */
 static BpStatus read_body(const Loader *loader, BpFilm *film, BpError *err) {
     BpFilmSource source;
     BpStatus status = bp_film_source_init(loader->in, loader->name, loader->header_checksum,

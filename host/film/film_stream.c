@@ -35,7 +35,7 @@ static void store_native(uint8_t *at, uint64_t value, size_t width) {
         *at = (uint8_t)value;
 }
 
-/* One plane after the other, and a width that the compiler knows: then it does many numbers at a time. */
+/* Plane by plane, with a constant width, so that the compiler vectorizes the loop. */
 static inline void to_plane(const uint8_t *numbers, size_t width, size_t count, size_t byte, uint8_t *plane) {
     for (size_t i = 0; i < count; i++)
         plane[i] = (uint8_t)(load_native(numbers + width * i, width) >> (8 * byte));
@@ -116,7 +116,7 @@ static void pack_plane(BpFilmSink *sink, uint8_t *plane, size_t count) {
     int code = Z_OK;
     sink->zip.next_in = plane;
     sink->zip.avail_in = 0;
-    do { /* what was given before is packed as it was meant to be, as far as there is room for it */
+    do { /* earlier input is packed with its own parameters, as far as the buffer allows */
         sink->zip.next_out = sink->packed;
         sink->zip.avail_out = PACKED_BYTES;
         code = deflateParams(&sink->zip, level, Z_RLE);

@@ -55,7 +55,7 @@ static bool is_light(const BpPicture *picture, BpTransfer transfer, uint32_t lef
     return count > 0 && sum / (double)count >= 128;
 }
 
-/* Lays a rim around what was drawn in `ink`, as wide as `reach`, over what is untouched. */
+/* Draws a rim of width `reach` around pixels of colour `ink`, over untouched pixels. */
 static void draw_rim(BpCanvas *canvas, const uint8_t untouched[3], const uint8_t ink[3], const uint8_t rim[3],
                      uint32_t reach) {
     for (uint32_t y = 0; y < canvas->height; y++)
@@ -114,8 +114,8 @@ BpStatus bp_color_bar_draw(BpPicture *picture, BpTransfer transfer, const float 
     canvas.rgb = malloc(3 * pixels);
     if (canvas.rgb == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a colour bar");
     bp_canvas_fill(&canvas, 0, 0, canvas.width, canvas.height, untouched);
-    /* A transparent picture lies on a page of any colour: dark letters with a light rim stand out from all.
-     */
+    /* A transparent picture may be placed on a page of any colour: dark letters with a light rim are readable
+     * on all. */
     const bool is_dark = picture->alpha != NULL || is_light(picture, transfer, picture->width - right);
     draw(&canvas, transfer, colors, ticks, count, small, scale, right, is_dark ? dark : light);
     if (picture->alpha != NULL) draw_rim(&canvas, untouched, dark, white, 2 * scale);

@@ -35,8 +35,8 @@ static Depths measure(const BpPicture *picture, double fog) {
     return (Depths){picture, nearest, farthest > nearest ? farthest - nearest : 0, fog};
 }
 
-/* How much of the line around the thing at (x + dx, y + dy) covers pixel (x, y): none where that thing is not
- * in front of what the pixel shows. */
+/* The coverage of pixel (x, y) by the outline of the surface at (x + dx, y + dy): 0 if that is not in front
+ * of the pixel's own surface. */
 static double covered(const Depths *depths, int64_t x, int64_t y, int64_t dx, int64_t dy, double width) {
     const double here = depth_at(depths, x, y), there = depth_at(depths, x + dx, y + dy);
     if (!isfinite(there) || !(here > there)) return 0;
@@ -100,7 +100,7 @@ BpStatus bp_depth_cues_draw(BpPicture *picture, const BpDepthCues *cues, BpError
         const double depth = (double)picture->depth[i],
                      stays = isfinite(depth) ? 1 - fade(&depths, depth) : 1;
         const double line = lines != NULL ? (double)lines[i] : 0;
-        /* Only what is seen fades, so the backdrop's share of a pixel at an edge stays as it is. */
+        /* Only surfaces fade, so the backdrop's share of a pixel at an edge is unchanged. */
         const double up = 1 - ((double)(i / picture->width) + 0.5) / picture->height;
         for (size_t c = 0; c < 3; c++) {
             const double behind =

@@ -57,7 +57,7 @@ static void scale_color(double position, uint8_t rgb[3]) {
     for (int c = 0; c < 3; c++) rgb[c] = bp_transfer_byte(linear[c], BP_TRANSFER_SRGB);
 }
 
-/* Where on the scale a relative error lies, 0 to 1; NaN stays NaN. */
+/* The position of a relative error on the scale, 0 to 1; NaN stays NaN. */
 static double scale_position(double relative_error) {
     if (isnan(relative_error)) return relative_error;
     if (!(relative_error > BP_ERROR_MAP_LEAST)) return 0;
@@ -125,9 +125,9 @@ static bool has_depth(const BpPicture *picture) {
 }
 
 /* The median of the known relative errors; NaN if none is known. It is over pixels that show some sphere,
- * since the sky has no noise and would hide that of the spheres. A picture without depth does not tell what
- * is sky; there pixels without noise are left out, if others have some. `of_what`: which pixels it is over.
- */
+ * since the sky has no noise and would hide that of the spheres. In a picture without depth, the sky is
+ * unknown; there pixels without noise are left out, if others have some. `of_what`: the pixels that count, in
+ * words. */
 static BpStatus median_error(const BpPicture *picture, double *median, const char **of_what, BpError *err) {
     const bool of_spheres = has_depth(picture);
     const size_t pixels = (size_t)picture->width * picture->height;
@@ -158,7 +158,7 @@ static void format_percent(double fraction, char text[32]) {
         snprintf(text, 32, "%.*f%%", percent < 0.995 ? 2 : percent < 9.95 ? 1 : 0, percent);
 }
 
-/* The colour bar with its ticks and, below, what it shows and the median. */
+/* The colour bar with its ticks and, below, its quantity and the median. */
 static void draw_legend(const MapPlan *plan, const char *of_what, double median, BpCanvas *canvas) {
     const uint32_t s = plan->scale, left = plan->margin, bar = canvas->width - 2 * plan->margin;
     for (uint32_t x = 0; x < bar; x++) {

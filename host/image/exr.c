@@ -1,8 +1,8 @@
 /* exr.c: OpenEXR by its C API (OpenEXRCore); see image.h.
  *
  * 32-bit channels: half floats would round the radiance to 11 bits and end at 65504, and the standard errors
- * with it. The library wants a file that it can seek in, so the whole file is made in memory (it is smaller
- * than the picture) and then goes out in one piece: to a file, a pipe or a test alike. */
+ * with it. The library needs to seek, so the file is assembled in memory (it is smaller than the picture) and
+ * then written in one piece, to a file, a pipe or a test. */
 #include "image.h"
 
 #include "base/output_file.h"
@@ -19,7 +19,7 @@
 #define NO_FILE "/dev/null/picture.exr"
 #define LAYERS_MAX (3 + 1 + 3 + 1 + AOV_FLOATS) /* radiance, alpha, error, samples, AOVs */
 
-/* One channel of the file: where its first value lies and how far it is to the next pixel's. */
+/* One channel of the file: its first value and the distance to the next pixel's. */
 typedef struct Layer {
     char name[32];
     const void *values;
@@ -56,9 +56,8 @@ static int64_t write_memory(exr_const_context_t context, void *user_data, const 
     return (int64_t)size;
 }
 
-/* The library calls this while it holds the context's lock, which is not recursive. Anything asked of the
- * context here, even its user data, would wait for ever. The code that the failed call returns says enough.
- */
+/* The library calls this while it holds the context's lock, which is not recursive. Any call on the context
+ * here, even for its user data, would deadlock. The code that the failed call returns suffices. */
 static void keep_quiet(exr_const_context_t context, exr_result_t code, const char *message) {
     (void)context;
     (void)code;

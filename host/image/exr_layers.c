@@ -112,7 +112,7 @@ static void search_part(exr_const_context_t exr, int part, Search *search) {
     }
 }
 
-/* Whether the layer's channels hold what a texel is made of. */
+/* Whether the layer's channels can become texels. */
 static BpStatus check_layer(const BpImageInput *input, exr_const_context_t exr, const BpExrLayer *layer,
                             BpError *err) {
     const exr_attr_chlist_t *channels = NULL;
@@ -136,7 +136,7 @@ static BpStatus fail_no_layer(const BpImageInput *input, const Search *search, b
     if (search->layers > 1)
         return bp_image_fail(input, err,
                              "found the layers %s, expected channels R, G and B, or one layer that has them; "
-                             "save the one you want as a file of its own",
+                             "save the one you want as a separate file",
                              search->list);
     if (search->chroma)
         return bp_image_fail(

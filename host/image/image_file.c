@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* Says what the file is, if it is known, and how to convert it. */
+/* Reports the kind of the file, if it is recognised, and how to convert it. */
 static BpStatus fail_kind(const BpImageInput *input, BpError *err) {
     char bytes[64];
     BpKnownFile known = {BP_FILE_SOURCE, "another kind of file"};

@@ -39,7 +39,7 @@ static void on_warning(png_structp png, png_const_charp message) {
     (void)message;
 }
 
-/* No date, and no version unless it is asked for: the same picture is the same file. */
+/* No date, and no version except on request, so that equal pictures give equal files. */
 static void put_texts(png_structp png, png_infop info, const BpImageExtra *extra) {
     png_text texts[1 + BP_IMAGE_NOTES_MAX] = {{.compression = PNG_TEXT_COMPRESSION_NONE}};
     char names[1 + BP_IMAGE_NOTES_MAX][24] = {"Software"};

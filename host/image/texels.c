@@ -13,7 +13,7 @@
 
 BpStatus bp_texels_create(uint32_t width, uint32_t height, BpImage **image, BpError *err) {
     *image = calloc(1, sizeof **image);
-    /* Zeroed by the system: what a damaged file never fills takes no memory. */
+    /* Zeroed by the system: pages that a damaged file never fills take no memory. */
     float *texels = calloc((size_t)width * height, 3 * sizeof *texels);
     if (*image == NULL || texels == NULL) {
         free(texels);
@@ -77,7 +77,7 @@ static void note_negatives(const Negatives *negatives, BpImage *image) {
                    negatives->texels == 1 ? "has values" : "have values", negatives->least);
 }
 
-/* Makes 0 of what is below, -0 too. */
+/* Replaces negative values, and -0, by 0. */
 static void raise_negatives(float texel[3], Negatives *negatives) {
     bool found = false;
     for (int c = 0; c < 3; c++) {

@@ -23,7 +23,7 @@ char *bp_cache_folder(const char *below, bool make) {
     for (int part = 0; part < 4; ++part) {
         const size_t used = strlen(folder);
         snprintf(folder + used, size - used, "%s", parts[part]);
-        /* The base itself may be missing too, but not what is above it. */
+        /* The base itself may be missing too, but not its parent. */
         if (make && (part > 0 || home[0] == '\0') && parts[part][0] != '\0') mkdir(folder, 0700);
     }
     return folder;

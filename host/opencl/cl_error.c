@@ -1,7 +1,7 @@
 /* cl_error.c: OpenCL's error numbers as names and remedies; see cl.h.
  *
- * In:    an error number and the call that gave it.   Out: a message for a person.
- * Knows: the error codes of OpenCL 1.2 and of the ICD loader.   Does not know: what was being done. */
+ * In:    an error number and the call that returned it.   Out: a message for people.
+ * Knows: the error codes of OpenCL 1.2 and of the ICD loader.   Does not know: what the call was for. */
 #include "cl.h"
 
 #define ERROR_LIST(X)                                                                                        \
@@ -74,7 +74,7 @@ const char *bp_cl_error_name(cl_int code) {
         ERROR_LIST(ERROR_NAME)
 #undef ERROR_NAME
     default:
-        return "an error that OpenCL 1.2 does not know";
+        return "an error code that OpenCL 1.2 does not define";
     }
 }
 
@@ -82,7 +82,7 @@ const char *bp_cl_error_name(cl_int code) {
 typedef struct Known {
     cl_int code;
     BpStatus status;
-    const char *meaning; /* with advice that suits everybody */
+    const char *meaning; /* with advice for every interface */
     BpRemedy remedy;
 } Known;
 

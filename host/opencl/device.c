@@ -28,7 +28,7 @@ static void take_part(BpDevice *device, uint32_t units) {
     device->info.compute_units = units;
 }
 
-/* What opening a device asks of its driver. */
+/* The calls into the driver that open a device. */
 typedef struct Opening {
     cl_device_id id;
     cl_context context;

@@ -29,7 +29,7 @@ static bool fits_hidden(const BpDeviceInfo *device, const char *text) {
     return contains(device->vendor, text) || contains(device->version, text);
 }
 
-/* Vendor and version, which nobody sees, count only where nothing that is shown has the text. */
+/* Vendor and version, which are not displayed, are searched only if no displayed text matches. */
 static bool fits(const BpDeviceInfo *device, const char *text, bool shown) {
     return shown ? fits_shown(device, text) : fits_hidden(device, text);
 }
@@ -67,8 +67,8 @@ static int order(uint64_t a, uint64_t b) {
     return (a > b) - (a < b);
 }
 
-/* Above 0: of two GPUs, `a` is the more capable one. Compute units are as wide as a maker likes: they are
- * compared within a platform only (`one_platform`), and between platforms if nothing else tells. */
+/* Above 0: of two GPUs, `a` is the more capable one. The width of a compute unit depends on the vendor: units
+ * are compared within a platform (`one_platform`), and between platforms only as a last resort. */
 static int compare_gpus(const BpDeviceInfo *a, const BpDeviceInfo *b, bool one_platform) {
     const int own_memory = order(b->has_shared_memory, a->has_shared_memory);
     const int memory = order(a->memory_bytes, b->memory_bytes);
@@ -79,8 +79,8 @@ static int compare_gpus(const BpDeviceInfo *a, const BpDeviceInfo *b, bool one_p
     return first != 0 ? first : one_platform ? memory : work;
 }
 
-/* The most capable GPU that can render, or NULL; of equal ones the first. It is the best of those that are
- * the best of their platforms, so the order of devices decides between equal ones alone. */
+/* The most capable GPU that can render, or NULL; of equal ones the first. It is the best of the platforms'
+ * best, so the order of devices matters only between equal ones. */
 static const BpDeviceInfo *best_gpu(const BpDeviceInfo *list, size_t count) {
     const BpDeviceInfo *best = NULL;
     for (size_t i = 0; i < count; ++i) {
@@ -119,9 +119,8 @@ static const BpDeviceInfo *by_number(const BpDeviceInfo *list, size_t count, con
     return *end == '\0' && number < count ? &list[number] : NULL;
 }
 
-/* The one kind of device among those that can render (or, where none can, among all) that `text` fits.
- * NULL where none fits, or (*ambiguous) where different ones do; equal ones are one kind: the first counts.
- */
+/* The device that `text` matches among those that can render (or among all, if none can). NULL if none
+ * matches, or (*ambiguous) if different ones do; of equal ones, the first. */
 static const BpDeviceInfo *by_text(const BpDeviceInfo *list, size_t count, const char *text,
                                    bool *ambiguous) {
     const BpDeviceInfo *chosen = NULL;

@@ -24,7 +24,7 @@ static void copy_trimmed(char *to, size_t size, const char *from) {
     to[length] = '\0';
 }
 
-/* A text that the device knows about itself, heap; "" where it does not answer, NULL without memory. */
+/* A text property of the device, heap; "" if it has none, NULL: out of memory. */
 static char *device_text(cl_device_id id, cl_device_info what) {
     size_t size = 0;
     if (clGetDeviceInfo(id, what, 0, NULL, &size) != CL_SUCCESS) size = 0;
@@ -152,12 +152,12 @@ static bool describe(cl_device_id id, cl_platform_id platform, unsigned number, 
     return find_lack(id, info, info->refusal);
 }
 
-/* All platforms, heap; *count 0 and NULL where there is none, which is no error. */
+/* All platforms, heap; *count 0 and NULL if there is none, which is not an error. */
 static BpStatus list_platforms(cl_platform_id **platforms, cl_uint *count, BpError *err) {
     *platforms = NULL;
     *count = 0;
     BP_TRY(bp_drivers_use(err));
-    /* Without any driver the loader says CL_PLATFORM_NOT_FOUND_KHR; other loaders say 0 platforms. */
+    /* Without any driver, this loader returns CL_PLATFORM_NOT_FOUND_KHR; others return 0 platforms. */
     if (clGetPlatformIDs(0, NULL, count) != CL_SUCCESS || *count == 0) {
         *count = 0;
         return BP_OK;
@@ -225,7 +225,7 @@ BpStatus bp_devices_list(BpDeviceInfo **list, size_t *count, BpError *err) {
     return bp_device_ids(list, NULL, count, err);
 }
 
-/* No device at all: says which platforms there are, and what to install. */
+/* No device at all: an error with the platforms and a remedy. */
 static BpStatus fail_without_devices(BpError *err) {
     cl_platform_id *platforms = NULL;
     cl_uint count = 0;

@@ -14,10 +14,9 @@
 
 #define SECONDS_DEFAULT 20.0
 
-/* The loader and the drivers belong to the process, so what is known of their start can belong to nothing
- * smaller. */
+/* Global, since the loader and the drivers belong to the process. */
 static pthread_mutex_t start_mutex = PTHREAD_MUTEX_INITIALIZER;
-static BpLongCall *start; /* NULL: nobody has asked yet; it is kept */
+static BpLongCall *start; /* NULL: not started yet; it is kept */
 static pthread_mutex_t asked_mutex = PTHREAD_MUTEX_INITIALIZER;
 static char asked[128]; /* the platform that is to list its devices; "": the loader is to list platforms */
 
@@ -34,7 +33,7 @@ BpStatus bp_driver_seconds(double *seconds, BpError *err) {
                    text);
 }
 
-/* A signal that a driver's fault sends tells nothing else. */
+/* Read by the signal handler for a driver's fault. */
 static _Atomic(const char *) doing;
 
 const char *bp_driver_doing(void) {
@@ -53,7 +52,7 @@ static void note_platform(cl_platform_id platform) {
     pthread_mutex_unlock(&asked_mutex);
 }
 
-/* What does not work is not told here: it will not work again when somebody lists the devices. */
+/* Failures are ignored here: they will recur when the devices are listed. */
 static void ask(void *nothing) {
     cl_platform_id platforms[BP_DRIVERS_MAX];
     cl_uint count = 0;
@@ -92,8 +91,8 @@ static BpStatus say_hung(double seconds, BpError *err) {
     pthread_mutex_unlock(&asked_mutex);
     return bp_fail(
         err, BP_ERR_BROKEN_DEVICE,
-        "an OpenCL driver hangs: %s%s did not answer within %.3g s; `ballpark devices` tells which of "
-        "the drivers is to blame: %s; remove it, or set OCL_ICD_VENDORS to the .icd file of another, "
+        "an OpenCL driver hangs: %s%s did not answer within %.3g s; `ballpark devices` shows which driver is "
+        "to blame: %s; remove it, or set OCL_ICD_VENDORS to the .icd file of another, "
         "or " BP_DRIVER_SECONDS " to a longer time",
         platform[0] != '\0' ? "the platform " : "the loader of drivers", platform, seconds, suspects);
 }

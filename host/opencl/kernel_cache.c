@@ -61,8 +61,7 @@ static uint64_t hash_processor(void) {
     return hash;
 }
 
-/* Of the variables by which Intel's CPU runtime is told what to compile for. The sum does not depend on their
- * order. */
+/* Of the variables that select the target of Intel's CPU runtime. The sum does not depend on their order. */
 static uint64_t hash_settings(void) {
     uint64_t hash = 0;
     for (char **variable = environ; variable != NULL && *variable != NULL; ++variable)
@@ -142,7 +141,7 @@ static void make_room(uint64_t bytes_max) {
 
 /* ---- programs ----------------------------------------------------------------------------------------- */
 
-/* The names of the program's kernels, heap, "" where the driver does not tell; NULL: out of memory. */
+/* The names of the program's kernels, heap; "" if the driver does not list them; NULL: out of memory. */
 static char *kernel_names(cl_program program) {
     size_t size = 0;
     if (clGetProgramInfo(program, CL_PROGRAM_KERNEL_NAMES, 0, NULL, &size) != CL_SUCCESS) size = 0;
@@ -153,7 +152,7 @@ static char *kernel_names(cl_program program) {
     return names;
 }
 
-/* The parts of a file that is whole and stands for this identity and source. */
+/* The parts of a file that is complete and has this identity and source. */
 static bool take_apart(const char *bytes, size_t size, const char *identity, const char *source,
                        BpCachePart parts[PARTS]) {
     Head head;
@@ -275,7 +274,7 @@ void bp_kernel_cache_store(const BpDevice *device, const char *source, const cha
 
 bool bp_kernel_cache_wants(const BpDevice *device, BpKernelCacheMode mode, double build_seconds) {
     if (mode != BP_KERNEL_CACHE_AUTO) return mode == BP_KERNEL_CACHE_ON;
-    /* PoCL keeps kernels itself, and compiles most of a program when it is run, after its binary was asked
-     * for. */
+    /* PoCL caches kernels itself, and compiles most of a program when it runs, after its binary would be
+     * read. */
     return build_seconds >= SLOW_SECONDS && strcmp(device->info.platform, BP_POCL_PLATFORM) != 0;
 }

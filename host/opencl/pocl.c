@@ -25,7 +25,7 @@ static bool cache_folder(char folder[FOLDER_MAX]) {
     return true;
 }
 
-/* 0, or the errno of what failed. Permissions alone do not tell: a file system may be read-only or full. */
+/* 0, or the errno of the failure. Permissions are not sufficient: a file system may be read-only or full. */
 static int try_writing(const char *folder) {
     char path[FOLDER_MAX + 32];
     snprintf(path, sizeof path, "%s", folder);

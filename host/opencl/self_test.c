@@ -12,7 +12,8 @@
 
 #define ITEMS 512u
 
-/* name, allowed error in units in the last place of a float (0: every bit), needs double, what it shows */
+/* name, allowed error in units in the last place of a float (0: every bit), needs double, meaning of a
+ * failure */
 #define COLUMN_LIST(X)                                                                                       \
     X(INTEGERS, 0.0, false, "32-bit integer arithmetic")                                                     \
     X(LONGS, 0.0, false, "64-bit integer arithmetic")                                                        \
@@ -189,8 +190,8 @@ const char *const bp_self_test_files[BP_SELF_TEST_FILES] = {
     "dialect/real.cl",         "dialect/fused.cl",  "dialect/lanes_one.cl", "dialect/lanes.cl",
     "dialect/lane_by_lane.cl", "dialect/divide.cl", "entry/self_test.cl"};
 
-/* The test's own program: the kernels' dialect and self_test.cl, and nothing else, so that it builds fast and
- * speaks even where the whole kernel does not build. The caller frees *source. */
+/* The test's own program: the kernels' dialect and self_test.cl, and nothing else, so that it builds fast,
+ * and also where the whole kernel does not build. The caller frees *source. */
 static BpStatus assemble(const BpDevice *device, const char *kernel_text, char **source, BpError *err) {
     size_t size = 0;
     BpStatus status = BP_OK;

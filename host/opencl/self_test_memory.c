@@ -1,10 +1,10 @@
-/* self_test_memory.c: which devices have passed; see self_test.h.
+/* self_test_memory.c: remembers the devices that have passed; see self_test.h.
  *
  * In:    a device's description.   Out: a small text file in the user's cache.
- * Knows: what an outcome depends on.   Does not know: where caches live, what is tested.
+ * Knows: what an outcome depends on.   Does not know: where caches are stored, what is tested.
  *
- * The file's name is a hash of everything that could change the outcome, and its text is all of that in
- * words: a file that holds other words, for whatever reason, is no memory. */
+ * The file's name is a hash of everything that could change the outcome, and its text has all of that in
+ * words: a file with other text is ignored. */
 #include "base/hash.h"
 #include "cache_file.h"
 #include "cache_folder.h"

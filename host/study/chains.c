@@ -50,14 +50,14 @@ static Vec refracted(Vec direction, Vec normal, double ratio) {
     return unit(add(scale(ratio, direction), scale(ratio * cosine - beyond, normal)));
 }
 
-/* What becomes of a direction where the chain meets the sphere, for the first time: 0, or later. */
+/* The chain's direction after its hit number `meeting` of the sphere, from 0. */
 static Vec onward_at(const Search *search, uint32_t meeting, Vec direction, Vec normal) {
     if (search->chords > 0 && meeting == 0) return refracted(direction, normal, 1 / search->index);
     if (search->chords > 0 && meeting == search->chords) return refracted(direction, normal, search->index);
     return reflected(direction, normal);
 }
 
-/* The ray that meets the sphere at an angle of incidence. */
+/* The ray that hits the sphere at an angle of incidence. */
 static Beam pass(const Search *search, double incidence) {
     const double angle = incidence_to_angle(search, incidence);
     const double length = search->distance * cos(angle) - search->radius * cos(incidence);
@@ -84,7 +84,7 @@ static double offset_at(const Search *search, double incidence, Vec aim, bool *a
     return offset(search, &beam, aim, ahead);
 }
 
-/* The share that surfaces send along the chain, where it meets the sphere at this angle. */
+/* The share of light that surfaces pass along the chain at this angle of incidence. */
 static double share_of_surfaces(const Search *search, double incidence) {
     const BpMaterial *glass = search->material;
     if (glass->kind == BP_MATERIAL_METAL) return 1;
@@ -114,8 +114,8 @@ static Vec in_space(const Search *search, Vec across, Vec planar) {
     return add(scale(planar.x, search->axis), scale(planar.y, across));
 }
 
-/* The spheres that the chain's rays meet, one after the other. Returns the radiance of the lamp as weakened
- * by a mirror's colour; *by: the first sphere that is not the chain's, or NULL. */
+/* Traces the spheres that the chain's rays hit. Returns the radiance of the lamp as weakened by a mirror's
+ * colour; *by: the first sphere that is not the chain's, or NULL. */
 static Vec trace(const Search *search, Vec direction, const BpSphere **by) {
     const Vec black = {0, 0, 0};
     Vec colour = {1, 1, 1};
@@ -146,7 +146,7 @@ static Vec trace(const Search *search, Vec direction, const BpSphere **by) {
     return black;
 }
 
-/* The line from there meets the lamp, or would if nothing stood before it. */
+/* The line from there hits the lamp, or would if it were not blocked. */
 static bool leads_to_lamp(const Search *search, Vec from, Vec direction) {
     if (search->lamp == NULL) return true; /* its points are directions */
     const Vec to = sub(vec(search->lamp->center), from);
@@ -158,12 +158,11 @@ static bool leads_to_lamp(const Search *search, Vec from, Vec direction) {
 typedef struct Found {
     BpChainWay way;
     bool seen;
-    double whole, lost; /* what it would bring if nothing stood in it, but for the lamp's radiance; and what
-                           is stopped */
+    double whole, lost; /* its light if unblocked, without the lamp's radiance; and the blocked part */
 } Found;
 
-/* A point of a lamp: where it is, or of a disc in which direction; and what part of it that stands for: of
- * the plane across `slant`, or of all directions; 0 for the middle, which is only looked at. */
+/* A point of a lamp, or a direction of a disc; and the part of the lamp that it represents: of the plane
+ * across `slant`, or of all directions; 0 for the middle, which only aims. */
 typedef struct Aim {
     Vec to, slant;
     double measure;
@@ -274,7 +273,7 @@ static double clearance(const BpSphere *sphere, Vec from, Vec to, bool endless) 
     return sqrt(length2(sub(there, scale(t, along)))) - fabs(sphere->radius);
 }
 
-/* Only spheres that may stand in the way are asked for each ray. */
+/* Only spheres that may block the way are tested for each ray. */
 static BpStatus gather(const BpScene *scene, const BpChainPoint *point, const BpChain *chain, Search *search,
                        BpError *err) {
     const BpSphere *ball = &scene->spheres[chain->sphere];
@@ -287,7 +286,7 @@ static BpStatus gather(const BpScene *scene, const BpChainPoint *point, const Bp
         to = vec(scene->spheres[chain->lamp].center);
         wide = fmax(wide, fabs(scene->spheres[chain->lamp].radius));
     }
-    /* Rays to a disc spread: what stands far away is kept. */
+    /* Rays to a disc spread, so distant spheres are kept. */
     const double spread =
         chain->disc ? tan(fmin(scene->discs[chain->lamp].half_angle_degrees, 80) * (PI / 180)) : 0;
     BpSphere *spheres = malloc(scene->sphere_count * sizeof *spheres);

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What a row changes; 0 keeps what the base has, enumerations are stored plus 1. */
+/* The changes of a row; 0 keeps the base's value, enumerations are stored plus 1. */
 typedef struct Change {
     uint32_t depth;
 #define MEMBER(type, member, option, plural) unsigned member;

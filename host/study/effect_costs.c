@@ -14,7 +14,7 @@
 
 #define ROUNDS_MAX 101u
 
-/* "Used 96 registers" of the trace kernel in NVIDIA's log; 0 if the log does not say it. */
+/* "Used 96 registers" of the trace kernel in NVIDIA's log; 0 if the log has none. */
 static uint64_t find_registers(const char *log) {
     unsigned long long registers = 0;
     const char *at = log != NULL ? strstr(log, "'trace'") : NULL;
@@ -201,7 +201,7 @@ BpStatus bp_costs_measure(const BpScene *scene, const BpRenderOptions *options, 
         costs->form = report.kernel;
     }
 
-    /* A first round settles clocks and caches, and tells how many samples fill a round. */
+    /* A first round settles clocks and caches, and determines the number of samples that fill a round. */
     BP_TRY_GOTO(status, run_round(renders, count, 0, 2, 1, seconds, err), done);
     double spp_wanted = plan->round_seconds / fmax(seconds[0], 1e-6);
     if (spp_wanted < 1) spp_wanted = 1;

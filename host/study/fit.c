@@ -87,7 +87,7 @@ double bp_study_time_scatter(const BpStudyResult *result) {
     return widest;
 }
 
-/* The error that no number of samples takes away. It counts only if it is shown to exist: its interval lies
+/* The error that remains with any number of samples. It counts only if it is significant: its interval lies
  * above 0. */
 static double floor_of(const BpStudySeries *series) {
     if (isnan(series->bias_square.value)) return isfinite(series->fit_floor) ? series->fit_floor : 0;

@@ -29,7 +29,7 @@ typedef enum BpStudyPhase {
     BP_STUDY_DONE
 } BpStudyPhase;
 
-/* A configuration at work. */
+/* A configuration that is being rendered. */
 typedef struct BpStudyRunner {
     BpRender *render;
     double cpu_seconds, wall_seconds, warm_device_seconds;
@@ -46,7 +46,7 @@ struct BpStudy {
     double start;
     BpReferences references;
     BpStudyRunner runners[BP_STUDY_CONFIGURATIONS_MAX];
-    size_t turn;               /* the configuration at work */
+    size_t turn;               /* the current configuration */
     uint64_t level;            /* samples per pixel that everyone is given now */
     size_t round, round_count; /* of the present level */
     bool last_level;           /* the present one is */
@@ -353,7 +353,7 @@ static BpStatus open_configuration(BpStudy *study, BpError *err) {
 
 /* ---- the end ----------------------------------------------------------------------------------------- */
 
-/* A sample costs the same at every count, so the largest, with the most rounds, tells for all. */
+/* A sample costs the same at every count, so the largest count, with the most rounds, serves for all. */
 static void settle_seconds(BpStudyResult *result) {
     for (size_t s = 1; s < result->count; s++) {
         BpStudySeries *series = &result->series[s];

@@ -1,7 +1,7 @@
 /* study_text.c: the results of a study as a text in memory; see ballpark.h.
  *
  * In:    a study that has ended.   Out: table, JSON, CSV or page.
- * Knows: which function prints which.   Does not know: what they print. */
+ * Knows: which function prints each form.   Does not know: what they print. */
 #include "base/escape.h"
 #include "base/json_memory.h"
 #include "base/status.h"

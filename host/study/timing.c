@@ -7,10 +7,10 @@
 
 #define ROUNDS_MIN 6u /* the fewest whose least and largest hold the median with 95 % */
 
-/* How many values at either end of `count` sorted ones the 95 % interval of their median leaves out: the
- * median lies below the value of rank k, counted from 0, when at most k of them do, with the probability of
- * at most k heads in `count` throws (the sign test's interval: W. Conover, Practical Nonparametric
- * Statistics, 3.2). */
+/* How many values at either end of `count` sorted ones lie outside the 95 % interval of their median: the
+ * median lies below the value of rank k, counted from 0, if at most k values do, with the probability of at
+ * most k heads in `count` throws (the sign test's interval: W. Conover, Practical Nonparametric Statistics,
+ * 3.2). */
 static size_t left_out(size_t count) {
     double chance = pow(0.5, (double)count), below = chance;
     size_t k = 0;

@@ -120,7 +120,7 @@ class Messages(ProgramTest):
              ("a.zip", b"PK\3\4" + bytes(90), "a file packed by zip", "unpack it first"),
              ("main.cc", b"// A picture\nint main() {}\n", "the source text of a program", "write the scene as JSON"),
              ("unnamed", b'#include "rtweekend.h"\n', "the source text of a program", "write the scene as JSON"),
-             ("a.test.gz", gzip.compress(b"hello"), "a file packed by gzip", "whose format the name tells, as in FILE.xyz.gz; rename it, or unpack"),
+             ("a.test.gz", gzip.compress(b"hello"), "a file packed by gzip", "whose name shows the format, as in FILE.xyz.gz; rename it, or unpack"),
              ("a.json.gz", gzip.compress(b"{}"), "a file packed by gzip", "unpack it"),
              ("a.xyz.bz2", b"BZh91AY&SY" + bytes(20), "a file packed by bzip2", "unpack it first"),
              ("a.jpg", b"\xff\xd8\xff\xe0" + bytes(90), "a JPEG picture", "expected a scene"))

@@ -139,7 +139,7 @@ class Fresnel(ProgramTest):
             for name in "schlick", "exact", "none":
                 done = self.render(name, "--fresnel", choice)
                 self.assert_same(done.stdout, pictures[choice], (name, choice))
-                self.assertIn("changes nothing: the scene says the same" if name == choice
+                self.assertIn("changes nothing: the scene has this value" if name == choice
                               else f"--fresnel {choice} overrides the scene in 1 of 1 dielectric material", done.errors)
                 self.assertEqual(self.render(name, "--fresnel", choice, "-q").errors, "")
 

@@ -129,7 +129,7 @@ static BpStatus make_plan(const BpBitsRun *run, Plan *plan, BpError *err) {
         const BpPrecision precision = numbers < 2 ? BP_PRECISION_SINGLE : BP_PRECISION_DOUBLE;
         const bool float_refine = numbers == 1;
         if (run->kernel != BP_KERNEL_AUTO && run->kernel != kernel) continue;
-        /* Nobody gets the pool form on a processor who does not ask for it. */
+        /* A processor uses the pool form only on request. */
         if (kernel == BP_KERNEL_POOL && run->kernel == BP_KERNEL_AUTO && run->device->type == BP_DEVICE_CPU)
             continue;
         if (run->one_precision && run->precision != precision) continue;
@@ -149,7 +149,7 @@ static BpStatus make_plan(const BpBitsRun *run, Plan *plan, BpError *err) {
     return BP_OK;
 }
 
-/* Pictures from before there were caustics do not say. */
+/* Older records lack this member. */
 static BpCaustics caustics_of(const json_t *picture) {
     const bool on = strcmp(bp_check_text(picture, "caustics"), bp_caustics_names[BP_CAUSTICS_ON]) == 0;
     return on ? BP_CAUSTICS_ON : BP_CAUSTICS_OFF;
@@ -196,7 +196,7 @@ static json_t *compare(const Form *form, const BpDeviceInfo *device, const BpFil
         json_object_set_new(entry, "hash", json_string(own));
         return entry;
     }
-    if (hash[0] == '\0') { /* scripts/record-bits asks for it */
+    if (hash[0] == '\0') { /* for scripts/record-bits */
         snprintf(reason, sizeof reason, "nothing is recorded");
         difference = (BpBitsDifference){.kind = BP_BITS_PICTURE, .largest = NAN, .mean = NAN};
     } else {

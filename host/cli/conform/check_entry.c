@@ -13,7 +13,7 @@
 
 static const char *const channels[] = {"red", "green", "blue"};
 
-/* JSON has no NaN: what is not known is null. */
+/* JSON has no NaN: an unknown number is null. */
 static json_t *number(double value) {
     return isfinite(value) ? json_real(value) : json_null();
 }

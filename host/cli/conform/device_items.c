@@ -90,7 +90,7 @@ static void read_error(const json_t *line, BpError *error) {
     if (json_object_get(line, "attachment") != NULL) bp_error_attach(error, text_of(line, "attachment"));
 }
 
-/* `doing`: what the child was at when it said so last. */
+/* `doing`: the child's latest reported step. */
 static void read_lines(const BpDeviceItems *items, const char *bytes, BpItemOutcome *outcomes,
                        char doing[64]) {
     for (const char *at = bytes, *end; (end = strchr(at, '\n')) != NULL; at = end + 1) {
@@ -145,7 +145,7 @@ BpStatus bp_device_items_run(const BpDeviceItems *items, BpItemOutcome *outcomes
     /* A child that a second signal has ended does not show that its device is broken. */
     fill_gaps(items, &report, bp_interrupted(), doing, outcomes);
     free(report.bytes);
-    if (bp_json_memory_failed()) { /* what was read may lack something */
+    if (bp_json_memory_failed()) { /* the result may be incomplete */
         bp_item_outcomes_clear(outcomes, items->count);
         memset(outcomes, 0, items->count * sizeof *outcomes);
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for the results of a device");

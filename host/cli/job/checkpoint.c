@@ -140,7 +140,7 @@ static void *write_film(void *argument) {
     return NULL;
 }
 
-/* The film of the render as it stands, and a writer for it. */
+/* The current film of the render, and a writer for it. */
 static BpStatus take_film(const BpCheckpoint *checkpoint, BpRender *render, Writer **taken, BpError *err) {
     Writer *writer = calloc(1, sizeof *writer);
     if (writer == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a checkpoint");

@@ -40,7 +40,7 @@ static BpStatus draw(const BpCommandLine *line, BpStop *stop, const BpProgress *
     return BP_OK;
 }
 
-/* Prepares for ranks that never answer: then there is no other time to say how the job goes on. */
+/* Prepares the message for the case that other ranks never answer, when it could not be printed otherwise. */
 static void prepare_explanation(const BpCommandLine *line, const BpStopRule *rule, double start,
                                 const BpCheckpoint *checkpoint) {
     char text[9000], command[8192];
@@ -57,7 +57,7 @@ static void prepare_explanation(const BpCommandLine *line, const BpStopRule *rul
     bp_interrupt_explain(text);
 }
 
-/* Whether the render is to end, as the signals of this process say, or of others that work on their own. */
+/* Whether a signal has arrived at this process, or at another one while ranks work apart. */
 static bool is_interrupted(BpComm *shared, BpComm *all) {
     const bool own = bp_interrupted();
     if (shared != NULL || all == NULL) return own;
@@ -88,7 +88,7 @@ BpStatus bp_render_loop(const BpCommandLine *line, BpComm *shared, BpRender *ren
         requests = is_interrupted(shared, line->comm) ? INTERRUPT : 0;
         if (bp_checkpoint_is_due(checkpoint, bp_clock_seconds())) requests |= CHECKPOINT;
         if (bp_preview_is_due(preview, bp_clock_seconds())) requests |= PREVIEW;
-        BP_TRY_GOTO(status, bp_comm_allreduce_or(shared, &requests, err), done); /* all do what any wants */
+        BP_TRY_GOTO(status, bp_comm_allreduce_or(shared, &requests, err), done); /* any rank may request */
         if (end->reason == BP_STOP_NOT_YET && (requests & (INTERRUPT | CHECKPOINT)) == CHECKPOINT)
             BP_TRY_GOTO(status, bp_checkpoint_begin(checkpoint, render, err), done);
         if (end->reason == BP_STOP_NOT_YET && (requests & (INTERRUPT | PREVIEW)) == PREVIEW)

@@ -17,7 +17,7 @@ BpStatus bp_resume_load(const BpCommandLine *line, const BpComm *shared, BpFilm 
                                    : bp_film_read_header(line->resume, film, err);
 }
 
-/* `option` was given, but the film says `has`, as the option would be written. */
+/* Error: `option` was given, but the film has the value `has`, in the notation of the option. */
 static BpStatus contradicts(const BpCommandLine *line, BpOption option, const char *has, BpError *err) {
     char given[80];
     bp_option_show(option, line, given, sizeof given);
@@ -110,11 +110,11 @@ BpStatus bp_resume_rule(const BpCommandLine *line, const BpFilm *film, BpStopRul
                        "--spp %" PRIu64 " contradicts --resume %.400s, which is to have %" PRIu64
                        " sample%s per pixel; ask for at least as many, or leave it out",
                        rule->samples_max, line->resume, least, bp_plural(least));
-    /* The render was to end at a time, which only the command line knows. */
+    /* The render was limited by time, which is not in the film. */
     if (rule->error <= 0 && rule->seconds <= 0 && rule->samples_max >= BP_SPP_MAX && !has_spp)
-        return bp_fail(err, BP_ERR_USAGE,
-                       "--resume %.400s: its render had only a time limit; say with --time, --spp or --error "
-                       "when this one is to end",
-                       line->resume);
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "--resume %.400s: its render had only a time limit; give this one --time, --spp or --error",
+            line->resume);
     return BP_OK;
 }

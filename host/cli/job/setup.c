@@ -41,7 +41,7 @@ static void say_fresnel(const BpCommandLine *line, const size_t counts[2]) {
     if (counts[1] == 0)
         bp_say(line, "--fresnel %s changes nothing: the scene has no dielectric material", line->fresnel);
     else if (counts[0] == 0)
-        bp_say(line, "--fresnel %s changes nothing: the scene says the same", line->fresnel);
+        bp_say(line, "--fresnel %s changes nothing: the scene has this value", line->fresnel);
     else
         bp_say(line, "--fresnel %s overrides the scene in %zu of %zu dielectric material%s", line->fresnel,
                counts[0], counts[1], bp_plural(counts[1]));
@@ -138,11 +138,11 @@ BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRen
 BpStatus bp_setup_share(const BpCommandLine *line, BpRenderOptions *options, BpError *err) {
     if (!bp_option_given(line, BP_OPTION_SHARE)) return BP_OK;
     if (bp_option_given(line, BP_OPTION_ERROR) || line->adaptive)
-        return bp_fail(
-            err, BP_ERR_USAGE,
-            "--share and --%s contradict: one share does not know the noise of the whole picture; leave "
-            "--%s out",
-            line->adaptive ? "adaptive" : "error", line->adaptive ? "adaptive" : "error");
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--share and --%s contradict: the noise of the whole picture does not follow from one "
+                       "share; leave "
+                       "--%s out",
+                       line->adaptive ? "adaptive" : "error", line->adaptive ? "adaptive" : "error");
     if (line->output == NULL)
         return bp_fail(err, BP_ERR_USAGE,
                        "--share %" PRIu32 "/%" PRIu32
@@ -184,7 +184,7 @@ static BpStatus all_devices(BpDeviceInfo **devices, size_t *count, BpError *err)
     free(*devices);
     *devices = NULL;
     BpDeviceInfo none;
-    const BpStatus status = bp_device_find(NULL, &none, err); /* says what to install */
+    const BpStatus status = bp_device_find(NULL, &none, err); /* its message has the remedy */
     return status != BP_OK ? status : bp_fail(err, BP_ERR_DEVICE, "no OpenCL device that can render");
 }
 
@@ -264,7 +264,7 @@ BpStatus bp_setup_self_test(const BpCommandLine *line, const BpDeviceInfo *devic
         say_threads(line, &devices[d], device->info.compute_units);
         const BpStatus status = bp_self_test_once(device, NULL, &fault);
         bp_device_close(&device);
-        /* A test that could not be run says nothing about the device. */
+        /* A test that could not run is not evidence against the device. */
         const bool failed = status == BP_ERR_DEVICE || status == BP_ERR_BUILD;
         bp_error_add_remedy(&fault, BP_INTERFACE_COMMAND_LINE);
         if (failed && line->force) {

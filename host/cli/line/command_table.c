@@ -125,10 +125,8 @@ const BpCommand bp_commands[] = {
             "the quartiles.\n"
             "\n"
             "With --pixel, follows one path of that pixel, step by step; --first-sample selects the sample. "
-            "Of its "
-            "first matte point, it lists the ways by which light of lamps comes there through a ball of "
-            "glass or off "
-            "a mirror, and what each brings.",
+            "For the first matte point, it lists the ways by which light of lamps arrives through a ball of "
+            "glass or off a mirror, and the light of each.",
         .examples = "  ballpark explain scenes/cover.json\n"
                     "  ballpark explain scenes/*.json --json effects.json\n"
                     "  ballpark explain scenes/v4-13-metal.json --measure\n"
@@ -197,8 +195,8 @@ const BpCommand bp_commands[] = {
         .summary = "list the OpenCL devices",
         .description =
             "Lists every device of every OpenCL platform and marks the default: a GPU if "
-            "there is one, otherwise a CPU. A driver that crashes or hangs when asked for its devices is "
-            "named and left out. For a GPU it says which --kernel was the fastest when the GPU was first "
+            "there is one, otherwise a CPU. A driver that crashes or hangs when it lists its devices is "
+            "named and left out. For a GPU it shows which --kernel was the fastest when the GPU was first "
             "used, and has been used there since.",
         .examples = "  ballpark devices\n"
                     "  ballpark devices --json -       the same as JSON\n",

@@ -61,7 +61,7 @@ const char *bp_command_text(const BpCommandLine *line, const char *resume, doubl
     for (int o = 0; o < BP_OPTION_NUMBER && fits; ++o) {
         const BpOption option = (BpOption)o;
         if (!bp_option_given(line, option) || option == BP_OPTION_RESUME) continue;
-        /* Who goes on has results so far, which are there to be replaced. */
+        /* A continued render replaces the results so far. */
         if (option == BP_OPTION_NO_CLOBBER && resume != NULL) continue;
         fits = append_option(text, size, line, option, seconds);
     }

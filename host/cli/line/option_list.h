@@ -179,7 +179,7 @@ enum {
     OPTION(MARGIN, "margin", 0, BP_CHECK, "agree only if brightness is shown to be equal within PERCENT",    \
            double, margin_percent, BP_PERCENT(0, 100))                                                       \
     OPTION(TIMEOUT, "timeout", 0, BP_CHECK | BP_DEVICES,                                                     \
-           "time limit per device, such as 90, 90s or 2m; what is rendered by then is judged", double,       \
+           "time limit per device, such as 90, 90s or 2m; samples rendered by then are judged", double,       \
            timeout_seconds, BP_TIME(0, 1e7))                                                                 \
     OPTION(AGAINST, "against", 0, BP_CHECK,                                                                  \
            "compare with an earlier check, whose --json wrote FILE: regressions, other drivers",             \

@@ -31,7 +31,7 @@ typedef struct OptionRow {
     const char *name, *help;
     unsigned commands;     /* BP_RENDER ... */
     size_t offset, size;   /* of the member of BpCommandLine */
-    const char *shown;     /* what the help calls the value; "": its words */
+    const char *shown;     /* the value's name in the help; "": its words */
     uint64_t least, most;  /* of a whole number, of each number of a pixel */
     double above, at_most; /* of a real number */
     const char *const *words;
@@ -253,7 +253,7 @@ static void show_value(const OptionRow *row, const void *member, char *text, siz
     case CHOICE:
         snprintf(text, size, "%s", row->words[wide - row->first]);
         break;
-    case TEXTS: /* one after the other, by who asks */
+    case TEXTS: /* in turn, by the calling command */
         text[0] = '\0';
         break;
     case WORD:

@@ -110,7 +110,7 @@ static BpStatus check_operands(const BpCommandLine *line, BpError *err) {
 
 BpStatus bp_command_line_parse(int argc, char **argv, BpCommandLine *line, BpError *err) {
     memset(line, 0, sizeof *line);
-    /* The command comes first, so that it says which options may follow. */
+    /* The command comes first, since it determines the options that may follow. */
     if (argc >= 2 && argv[1][0] != '-') {
         BP_TRY(bp_command_find(argv[1], &line->command, err));
         argv[1] = argv[0];
@@ -119,7 +119,7 @@ BpStatus bp_command_line_parse(int argc, char **argv, BpCommandLine *line, BpErr
     }
     struct option long_options[BP_OPTION_NUMBER + 1];
     char letters[2 + 2 * BP_OPTION_NUMBER + 1] =
-        ":"; /* ':': a missing value is told from an unknown option */
+        ":"; /* ':': distinguishes a missing value from an unknown option */
     bp_option_getopt_tables(long_options, letters);
 
     opterr = 0;
@@ -127,8 +127,8 @@ BpStatus bp_command_line_parse(int argc, char **argv, BpCommandLine *line, BpErr
     for (;;) {
         const int result = getopt_long(argc, argv, letters, long_options, NULL);
         if (result == -1) break;
-        /* An unknown letter is told by optopt: it may stand amid others ("-qx"). A long option that is at
-         * fault stands just before optind. */
+        /* An unknown letter is in optopt, since it may stand amid others ("-qx"). A faulty long option stands
+         * just before optind. */
         if (result == '?' && optopt > 0 && optopt < BP_OPTION_LONG) {
             const char name[3] = {'-', (char)optopt, '\0'};
             return fail_unknown_option(line, name, err);

@@ -17,7 +17,7 @@ static bool goes_to_a_file(const char *result) {
     return failed != 0 || S_ISREG(info.st_mode);
 }
 
-/* Writes to the open new file `name`, whole or not at all; the name of what was written, or NULL. */
+/* Writes to the open new file `name`, whole or not at all; returns its name, or NULL. */
 static char *write_film(const BpFilm *film, int descriptor, char **name) {
     FILE *out = descriptor >= 0 ? fdopen(descriptor, "wb") : NULL;
     bool good = out != NULL && bp_film_write_stream(film, out, NULL) == BP_OK;
@@ -30,7 +30,7 @@ static char *write_film(const BpFilm *film, int descriptor, char **name) {
 
 void bp_keep_sums(const BpFilm *film, const char *result, BpError *err) {
     if (err == NULL || !goes_to_a_file(result) || strstr(err->message, BP_OUTPUT_KEPT_AS) != NULL) return;
-    static const char target[] = "ballpark.bpa"; /* a suffix makes it a name that nobody else has */
+    static const char target[] = "ballpark.bpa"; /* a suffix makes the name unique */
     char *name = NULL;
     char *kept = write_film(film, bp_temporary_create_elsewhere(target, 0600, &name), &name);
     if (kept == NULL) kept = write_film(film, bp_temporary_create_in(".", target, 0600, &name), &name);

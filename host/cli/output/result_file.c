@@ -136,7 +136,7 @@ static bool is_encoded(BpFormat format) {
     return format == BP_FORMAT_PNG || format == BP_FORMAT_PPM || format == BP_FORMAT_PPM_ASCII;
 }
 
-/* What has no place in the format that is asked for. */
+/* Refuses options that the chosen format cannot hold. */
 static BpStatus check_figure(const BpCommandLine *line, BpFormat format, BpError *err) {
     const bool png = format == BP_FORMAT_PNG, noted = png || format == BP_FORMAT_EXR;
     if (!noted && bp_option_given(line, BP_OPTION_DPI))
@@ -221,7 +221,7 @@ BpStatus bp_result_take_width(BpCommandLine *line, BpError *err) {
     if (!bp_option_given(line, BP_OPTION_WIDTH_MM)) return BP_OK;
     if (!bp_option_given(line, BP_OPTION_DPI))
         return bp_fail(err, BP_ERR_USAGE,
-                       "--width-mm needs --dpi, to tell how many pixels that is; add --dpi 300");
+                       "--width-mm needs --dpi, to compute the width in pixels; add --dpi 300");
     if (bp_option_given(line, BP_OPTION_WIDTH))
         return bp_fail(err, BP_ERR_USAGE, "--width-mm and --width do not go together; give one of them");
     const double pixels = floor(line->width_mm / 25.4 * line->dpi + 0.5);
@@ -230,7 +230,7 @@ BpStatus bp_result_take_width(BpCommandLine *line, BpError *err) {
                        line->width_mm, line->dpi, pixels, BP_PICTURE_SIDE_MAX);
     line->width = (uint32_t)pixels;
     line->given[BP_OPTION_WIDTH] = true;
-    line->given[BP_OPTION_WIDTH_MM] = false; /* what goes on from here needs no second look */
+    line->given[BP_OPTION_WIDTH_MM] = false; /* a continued render needs no second check */
     return BP_OK;
 }
 
@@ -260,7 +260,7 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
     if (line->metadata) BP_TRY_GOTO(status, make_metadata(line, film, &metadata, &extra, err), done);
     const BpLegend *const legend =
         scene != NULL && scene->legend.shown && is_encoded(result->format) ? &scene->legend : NULL;
-    /* The map shows the errors of what was rendered, not of what is drawn over it. */
+    /* The map shows the errors of the render, not of lines drawn over it. */
     const bool apart = legend != NULL || bp_result_has_cues(line) || line->exposure != 0;
     if (is_picture || has_map) BP_TRY_GOTO(status, bp_film_picture(film, &picture, err), done);
     if (has_map && apart) BP_TRY_GOTO(status, bp_film_picture(film, &undrawn, err), done);
@@ -273,14 +273,14 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
                     done);
     if (rendered && picture.alpha != NULL && is_picture && result->format != BP_FORMAT_PNG &&
         result->format != BP_FORMAT_EXR)
-        bp_say(line, "%s has no alpha: what would be transparent is black; .png and .exr keep it",
+        bp_say(line, "%s has no alpha: transparent parts are black; .png and .exr keep it",
                bp_result_name(result));
     BpCommandLine of_result = *line;
     if (result->is_own) of_result.no_clobber = false;
     status = is_picture ? bp_line_write_picture(&of_result, result->path, &picture, result->format, transfer,
                                                 &extra, err)
                         : bp_line_write_film(&of_result, result->path, film, err);
-    /* Who closes a pipe wants no more of the picture, but the map is a file of its own. */
+    /* A closed pipe ends the picture, but the map is a separate file. */
     if (has_map && (status == BP_OK || strcmp(result->path, "-") == 0)) {
         const BpStatus mapped = bp_line_write(line, result->error_map, print_error_map,
                                               apart ? &undrawn : &picture, status == BP_OK ? err : NULL);

@@ -22,8 +22,7 @@
  * all 0: a driver may have ended the process. */
 enum { CHILD_DONE = 113, CHILD_FAILED = 114 };
 
-/* How often the parent looks whether it was interrupted, and how many times later it tells the child again.
- */
+/* How often the parent polls for an interruption, and after how many polls it signals the child again. */
 enum { LOOK_MS = 100, LOOKS_PER_SIGNAL = 10 };
 
 /* Nobody would wait for the child once the parent is gone, also by a signal that cannot be caught. */

@@ -44,8 +44,7 @@ static void keep_list(BpChildReport *report, BpDeviceSurvey *survey) {
 
 /* ---- a folder of drivers' files ---------------------------------------------------------------------- */
 
-/* Puts a file that names the library of one driver into `folder`, under its number; false: errno says why
- * not. */
+/* Puts a file that names the library of one driver into `folder`, under its number; false: see errno. */
 static bool enter(const char *folder, size_t number, const char *library) {
     char path[600];
     snprintf(path, sizeof path, "%s/%03zu.icd", folder, number);
@@ -69,7 +68,8 @@ static void name_broken(const BpBrokenDriver *driver) {
            driver->failure);
 }
 
-/* Asks the drivers one by one; those that answer end up in the survey's folder, the others in its list. */
+/* Tries the drivers one by one; those that work are put into the survey's folder, the others into its list.
+ */
 static BpStatus try_each(const BpDriverFiles *drivers, double seconds, bool quiet, BpDeviceSurvey *survey,
                          BpError *err) {
     BpTemporaryFolder alone = {0};
@@ -166,7 +166,7 @@ BpStatus bp_device_survey_find(const BpDeviceSurvey *survey, const char *text, B
     if (survey->count > 0)
         status = bp_device_choose(survey->devices, survey->count, text, device, err);
     else if (survey->broken_count == 0) {
-        status = bp_device_find(text, device, err); /* says what to install */
+        status = bp_device_find(text, device, err); /* its message has the remedy */
         if (status == BP_ERR_DEVICE) status = BP_ERR_NO_DEVICE;
     } else
         status = bp_fail(err, BP_ERR_BROKEN_DEVICE, "no OpenCL device is left");

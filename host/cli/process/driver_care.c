@@ -44,11 +44,11 @@ static struct {
 
 /* ---- starting again: all of it may be called by a handler of signals ---------------------------------- */
 
-/* In one piece, as other ranks may have the same to say. NULL ends the list of texts. */
+/* By one write, since other ranks may print the same. NULL ends the list of texts. */
 static void tell(const char *const *texts) {
     char line[1024] = "";
     for (; *texts != NULL; ++texts) strncat(line, *texts, sizeof line - strlen(line) - 1);
-    if (write(STDERR_FILENO, line, strlen(line)) < 0) return; /* nowhere to say it */
+    if (write(STDERR_FILENO, line, strlen(line)) < 0) return; /* a failure cannot be reported */
 }
 
 /* Returns where it cannot. */
@@ -65,13 +65,13 @@ static void start_again(void) {
 static void end_with_words(const char *how, const char *doing) {
     const bool starts = strcmp(doing, "starting") == 0;
     const char *const again[] = {"an OpenCL driver ",           how, " while ", doing,
-                                 ": each is asked by itself\n", NULL};
+                                 ": each is tried by itself\n", NULL};
     const char *const end[] = {
         "ballpark: an OpenCL driver ",
         how,
         " while ",
         doing,
-        starts ? "; `ballpark devices` tells which one: remove it, or set OCL_ICD_VENDORS "
+        starts ? "; `ballpark devices` shows which one: remove it, or set OCL_ICD_VENDORS "
                  "to the .icd file of another\n"
                : "; choose another device with --device (`ballpark devices` lists them)\n",
         NULL};
@@ -81,11 +81,11 @@ static void end_with_words(const char *how, const char *doing) {
     _exit(bp_status_exit_code(BP_ERR_DEVICE));
 }
 
-/* A driver that is refused memory ends the process, as a C++ exception that nobody catches does. */
+/* A driver that runs out of memory ends the process, as an uncaught C++ exception does. */
 static void end_without_memory(void) {
     const char *const text[] = {
         "ballpark: out of memory: an OpenCL driver was refused memory and gave up; give this process more "
-        "(`ulimit -v` says how much it may have), or another --device\n",
+        "(`ulimit -v` shows its limit), or another --device\n",
         NULL};
     tell(text);
     bp_output_abandon();
@@ -99,7 +99,7 @@ static void on_fault(int number, siginfo_t *info, void *context) {
     while (f + 1 < FAULTS && faults[f].number != number) ++f;
     if (number == SIGABRT && getpid() == care.process && bp_memory_is_short()) end_without_memory();
     if (doing == NULL || getpid() != care.process) { /* not our affair */
-        /* A driver's handler (LLVM's) may put back this one, and is not to be asked again. */
+        /* A driver's handler (LLVM's) may reinstall this one, and must not be called again. */
         sigaction(number, care.has_passed_on ? &care.before[f] : &care.of_driver[f], NULL);
         care.has_passed_on = true;
         if (info->si_code <= 0) raise(number); /* else the same instruction faults again */
@@ -213,7 +213,7 @@ BpStatus bp_driver_care_start(const BpCommandLine *line, BpError *err) {
     const BpStatus status = bp_drivers_start_until(stops, err);
     watch_for_faults();
     if (status == BP_ERR_BROKEN_DEVICE && care.may_restart) {
-        bp_say(line, "the OpenCL drivers have not answered within %.3g s: each is asked by itself", seconds);
+        bp_say(line, "the OpenCL drivers have not answered within %.3g s: each is tried by itself", seconds);
         start_again();
     }
     unsetenv(AGAIN);

@@ -48,7 +48,7 @@ static _Noreturn void keep(Answer *answer, int other) {
     _exit(0);
 }
 
-/* Starts the keeper and hears its answer. false: there is none, errno says why. */
+/* Starts the keeper and waits for its answer. False: there is none, see errno. */
 static bool start_keeper(BpTemporaryFolder *folder, Answer *answer) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return false;

@@ -28,7 +28,7 @@ static size_t format_bar(double fraction, unsigned cells, bool utf8, char *text,
 
 enum { SHARE, LEFT, NOISE, RATE, PARTS };
 
-/* What there is to say, the most important first; "" for what is not known yet. */
+/* The parts of the line, the most important first; "" if not known yet. */
 static void format_parts(const BpProgressView *view, char parts[PARTS][PART_SIZE]) {
     char number[PART_SIZE - 16];
     const double fraction = fmin(fmax(view->fraction, 0.0), 1.0);

@@ -35,7 +35,7 @@ static size_t column_width(const BpTable *table, size_t column) {
 static void print_cell(const BpTable *table, size_t row, size_t column, bool last, FILE *out) {
     const char *text = bp_table_cell(table, row, column);
     const int blanks = (int)(column_width(table, column) - characters(text));
-    /* A last cell that is wider than the page goes on below itself. */
+    /* A last cell that is wider than the page is continued below. */
     fprintf(out, "%*s%s%s", table->right[column] ? blanks : 0, "", last ? BP_HANG : "", text);
     if (!last) fprintf(out, "%*s", (table->right[column] ? 0 : blanks) + GAP, "");
 }

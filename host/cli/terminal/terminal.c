@@ -57,7 +57,8 @@ bool bp_terminal_has_utf8(void) {
 }
 
 void bp_terminal_show(const char *text) {
-    /* To the line's start, the text, and clear what is left of the line before (ECMA-48: EL). */
+    /* Returns to the start of the line, prints the text, and clears the rest of the old line (ECMA-48: EL).
+     */
     fprintf(stderr, "\r%s\033[K", text);
     fflush(stderr);
 }

@@ -76,7 +76,7 @@ static bool ask_for_sixels(void) {
 }
 
 static BpTerminalGraphics detect(void) {
-    /* They pass on letters only, unless they are told otherwise. */
+    /* By default, they pass on text only. */
     if (getenv("TMUX") != NULL || getenv("STY") != NULL) return BP_GRAPHICS_BLOCKS;
     if (getenv("KITTY_WINDOW_ID") != NULL || variable_has("TERM", "kitty") || variable_has("TERM", "ghostty"))
         return BP_GRAPHICS_KITTY;
@@ -118,9 +118,9 @@ typedef struct Size {
     unsigned width, height; /* of pixels */
 } Size;
 
-/* As large as the terminal allows, with a line left for the status and one for the prompt; no pixel is shown
- * larger than `largest` pixels of the screen. Letters are taken to be twice as high as wide where the
- * terminal does not say. */
+/* The largest size that leaves a line for the status and one for the prompt; a pixel takes at most `largest`
+ * pixels of the screen. Letters are assumed to be twice as high as wide if the terminal does not report their
+ * size. */
 static Size choose_size(const BpPicture *picture, unsigned largest) {
     struct winsize window = {0};
     unsigned letter_width = 8, letter_height = 16;
@@ -169,7 +169,7 @@ static uint8_t *resize(const BpPicture *picture, unsigned width, unsigned height
 
 /* ---- half blocks -------------------------------------------------------------------------------------- */
 
-/* 16 million colours where the terminal says that it has them, else the cube of 216. */
+/* 16 million colours if the terminal announces them, else the cube of 216. */
 static void print_color(FILE *out, bool foreground, const uint8_t color[3]) {
     if (variable_is("COLORTERM", "truecolor") || variable_is("COLORTERM", "24bit")) {
         fprintf(out, "\033[%d;2;%d;%d;%dm", foreground ? 38 : 48, color[0], color[1], color[2]);
@@ -251,8 +251,8 @@ static bool print_iterm2(FILE *out, const BpPicture *picture, const Size *size, 
 
 enum { LEVELS = 6, COLORS = LEVELS * LEVELS * LEVELS };
 
-/* One of the cube's colours; the thresholds of an 8 x 8 matrix (B. E. Bayer 1973) share out what lies
- * between. */
+/* One of the cube's colours; the thresholds of an 8 x 8 matrix (B. E. Bayer 1973) dither the values between.
+ */
 static unsigned dither(const uint8_t color[3], unsigned x, unsigned y) {
     unsigned threshold = 0, number = 0;
     for (unsigned bit = 0; bit < 3; ++bit)

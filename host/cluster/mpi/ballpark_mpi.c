@@ -113,7 +113,7 @@ static void abort_all(int exit_code) {
 }
 
 static void end(void) {
-    while (was_notified()) { /* what nobody has looked for */
+    while (was_notified()) { /* an unread notice */
     }
     MPI_Finalize();
 }
