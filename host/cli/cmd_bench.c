@@ -41,10 +41,12 @@
 
 /* ---- the fixed scenes -------------------------------------------------------------------------------- */
 
-/* cover   the fourth edition's cover: every material, a lens diffuse   the same spheres with metal and glass
- * made matte: short paths, one kind of material glass   the same spheres, all glass except the ground: long
- * paths that diverge field-N   N matte spheres of random colours in a cube, seen from outside; similar at any
- * N, so that the figures show what the number of spheres costs ball-N   a matte, bumpy ball of N triangles */
+/* cover      the fourth edition's cover: every material, a lens
+ * diffuse    the same spheres with metal and glass made matte: short paths, one kind of material
+ * glass      the same spheres, all glass except the ground: long paths that diverge
+ * field-N    N matte spheres of random colours in a cube, seen from outside; similar at any N, so that the
+ *            figures show the cost of the number of spheres
+ * ball-N     a matte, bumpy ball of N triangles */
 enum { GRID = 11, SEED = 1, WIDTH = 400, SAMPLES = 64 };
 
 static const char field_document[] =

@@ -18,11 +18,13 @@
 BpStatus bp_check_against_read(const char *path, json_t **document, BpError *err);
 
 /* {"file", "ballpark", "regressions": how many, "changes": [{"kind", "scene", "device", "was", "now"}]}.
- * Kinds: "regression"   agreed, and does no longer; "recovered": the other way round; "verdict": another
- * change "driver"   the device has another driver version, once per device "gone"   a device of the earlier
- * check is missing; only if `all` devices were checked "new"   a device or a scene that the earlier check did
- * not have "settings"   the scene was checked with another size, number of samples, depth, seed or kernel A
- * device that is gone is a regression if it agreed anywhere. NULL: out of memory. */
+ * Kinds:
+ *   "regression"   agreed, and does no longer; "recovered": the other way round; "verdict": another change
+ *   "driver"       the device has another driver version, once per device
+ *   "gone"         a device of the earlier check is missing; only if `all` devices were checked
+ *   "new"          a device or a scene that the earlier check did not have
+ *   "settings"     the scene was checked with another size, number of samples, depth, seed or kernel
+ * A device that is gone is a regression if it agreed anywhere. NULL: out of memory. */
 json_t *bp_check_against(const json_t *scenes, const json_t *earlier, const char *path, bool all);
 
 /* The number of devices that are missing. */

@@ -31,17 +31,23 @@ enum {
  * the same for a value that goes to the member of BpRenderOptions with the same name and type
  * (cli/job/setup.c).
  *
- * Values, each with its name in the help: BP_FLAG   bool: the option takes no value BP_WHOLE(shown, least,
- * most)   uint32_t or uint64_t: a whole number BP_REAL(shown, above, most)   double: above the one, up to the
- * other BP_PERCENT(above, most)   double: the same, in percent; "1" and "1%" are the same BP_TIME(above,
- * most)   double: seconds; "90", "90s", "1.5m", "1h30m" BP_PIXEL(shown, most)   BpPixel: two whole numbers up
- * to `most` BP_SIGNED(shown)   int64_t: a whole number that may be negative BP_SLICE(shown)   BpSlice: A:B:S
- * BP_PART(shown)   BpShare: I/N, one of N shares BP_CHOICE(shown, names, first)   an enumeration with its
- * names (base/names.h), from its value `first` on BP_WORD(word, ...)   const char *: one of these words
- * BP_TEXT(shown)   const char *: any text that is not empty BP_TEXTS(shown)   BpTexts: the same, and the
- * option may be given several times BP_RESULT(shown)   const char *: a file to write, which no other file of
- * the run may be A choice without a name to show ("") and a word are shown as all their words: robust|plain.
- * Texts for single commands and defaults are in BP_OPTION_NOTES, below. */
+ * Values, each with its name in the help:
+ *   BP_FLAG                          bool: the option takes no value
+ *   BP_WHOLE(shown, least, most)     uint32_t or uint64_t: an integer
+ *   BP_REAL(shown, above, most)      double: above the one, up to the other
+ *   BP_PERCENT(above, most)          double: the same, in percent; "1" and "1%" are the same
+ *   BP_TIME(above, most)             double: seconds; "90", "90s", "1.5m", "1h30m"
+ *   BP_PIXEL(shown, most)            BpPixel: two integers up to `most`
+ *   BP_SIGNED(shown)                 int64_t: an integer that may be negative
+ *   BP_SLICE(shown)                  BpSlice: A:B:S
+ *   BP_PART(shown)                   BpShare: I/N, one of N shares
+ *   BP_CHOICE(shown, names, first)   an enumeration with its names (base/names.h), from its value `first` on
+ *   BP_WORD(word, ...)               const char *: one of these words
+ *   BP_TEXT(shown)                   const char *: any text that is not empty
+ *   BP_TEXTS(shown)                  BpTexts: the same, and the option may be given several times
+ *   BP_RESULT(shown)                 const char *: a file to write, which no other file of the run may be
+ * A choice without a name to show ("") and a word are shown as all their words: robust|plain. Texts for
+ * single commands and defaults are in BP_OPTION_NOTES, below. */
 #define BP_OPTION_LIST(OPTION, RENDER_OPTION)                                                                \
     OPTION(OUTPUT, "output", 'o', BP_RENDER | BP_COST | BP_MERGE | BP_BENCH | BP_GENERATE | BP_SCENE,        \
            "where the result goes; \"-\" is standard output", const char *, output, BP_RESULT("FILE"))       \
@@ -179,7 +185,7 @@ enum {
     OPTION(MARGIN, "margin", 0, BP_CHECK, "agree only if brightness is shown to be equal within PERCENT",    \
            double, margin_percent, BP_PERCENT(0, 100))                                                       \
     OPTION(TIMEOUT, "timeout", 0, BP_CHECK | BP_DEVICES,                                                     \
-           "time limit per device, such as 90, 90s or 2m; samples rendered by then are judged", double,       \
+           "time limit per device, such as 90, 90s or 2m; samples rendered by then are judged", double,      \
            timeout_seconds, BP_TIME(0, 1e7))                                                                 \
     OPTION(AGAINST, "against", 0, BP_CHECK,                                                                  \
            "compare with an earlier check, whose --json wrote FILE: regressions, other drivers",             \
