@@ -58,8 +58,8 @@ const char *bp_decimal_parse(const char *text, double *value) {
     return end != text ? end : NULL;
 }
 
-/* What follows the letters that begin an exponent at `text`, be they left away; NULL: no exponent begins
- * there. *digits: how many digits it must have; 0: any number. */
+/* The text after the letters of an exponent at `text`, which may be omitted; NULL: there is no exponent.
+ * *digits: the number of digits that it must have; 0: any. */
 static const char *exponent_at(const char *text, bool has_point, size_t *digits) {
     *digits = 0;
     if (*text != '\0' && strchr("dDqQ", *text) != NULL) return text + 1;
@@ -80,7 +80,7 @@ const char *bp_table_number_parse(const char *text, double *value) {
     const char *const first = *exponent == '-' || *exponent == '+' ? exponent + 1 : exponent;
     const size_t count = strspn(first, "0123456789");
     if (count == 0 || count > 5 || (wanted > 0 && count != wanted)) return end;
-    /* Written anew with an e, so that the value is rounded as any other. */
+    /* Rewritten with an e, so that the value is rounded like any other. */
     char copy[TEXT_SIZE];
     const size_t rest = (size_t)(first - exponent) + count;
     memcpy(copy, text, length);

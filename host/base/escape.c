@@ -38,7 +38,7 @@ size_t bp_control_length(const char *text, uint32_t *character) {
     return length > 0 && is_control(*character) ? length : 0;
 }
 
-/* How many bytes at `text` may be shown as they are; 0: the first may not. */
+/* The number of bytes at `text` that need no escape; 0: the first needs one. */
 static size_t printable_length(const char *text) {
     uint32_t character = 0;
     const size_t length = decode(text, &character);

@@ -45,7 +45,7 @@ BpStatus bp_file_open(const char *path, bool accept_pipe, const char *expected, 
                       BpError *err) {
     struct stat state;
     *stream = NULL;
-    /* Looked at before it is opened, since opening a device can have effects; and after, since names can
+    /* Checked before it is opened, since opening a device can have effects, and afterwards, since names can
      * change. */
     if (stat(path, &state) != 0) return fail_open(path, err);
     const bool pipe = accept_pipe && S_ISFIFO(state.st_mode);
@@ -82,7 +82,7 @@ BpStatus bp_stream_read(FILE *stream, uint64_t size, const char *path, char **by
     char *buffer = NULL;
     size_t used = 0, capacity = 0;
     if (size > BP_TEXT_BYTES_MAX) return fail_size(path, err);
-    do { /* one byte more than the file's size, so that its end is met in the first round */
+    do { /* one byte more than the file's size, so that the first read reaches its end */
         capacity = capacity > 0 ? 2 * capacity : size > 0 ? (size_t)size + 1 : FIRST_CAPACITY;
         char *grown = realloc(buffer, capacity);
         if (grown == NULL) {

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* How files of a kind begin, `offset` bytes behind their first, or what their names end in. */
+/* The first bytes of a kind of file, from `offset` on, or the ending of its name. */
 typedef struct Known {
     BpKnownFile file;
     const char *ending, *bytes;

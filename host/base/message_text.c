@@ -38,8 +38,7 @@ static size_t edit_distance(const char *a, size_t a_length, const char *b, size_
     return previous[b_length];
 }
 
-/* One letter may be wrong, or a third of them in a word that begins alike: what differs more is another word.
- */
+/* One letter may be wrong, or a third of them in a word with the same beginning. */
 static bool is_near(const char *a, size_t a_length, const char *b, size_t b_length, size_t distance) {
     return distance <= 1 ||
            (small(a[0]) == small(b[0]) && 3 * distance <= (a_length > b_length ? a_length : b_length));

@@ -31,7 +31,7 @@ static int open_direct(const BpOutputTarget *target) {
     return open(target->path, O_WRONLY | O_CLOEXEC | O_NOCTTY | (target->through ? O_APPEND : 0));
 }
 
-/* Whether the bytes can be copied into the target, where nothing can be made beside it. */
+/* Whether the bytes can be copied into the target, if no file can be created beside it. */
 static bool can_copy_into(const BpOutputTarget *target) {
     const int descriptor = target->exists ? open(target->path, O_WRONLY | O_CLOEXEC | O_NOCTTY) : -1;
     if (descriptor >= 0) close(descriptor);
@@ -49,7 +49,7 @@ static BpStatus open_file(const char *path, bool new_only, BpOutputFile *file, B
     if (file->direct) {
         descriptor = open_direct(&file->target);
     } else {
-        const mode_t mode = exists ? 0600 : 0666; /* until the permissions of the replaced file are there */
+        const mode_t mode = exists ? 0600 : 0666; /* until it gets the permissions of the replaced file */
         descriptor = bp_temporary_create(file->target.path, mode, &file->unnamed, &file->temporary);
         problem = errno;
         if (descriptor < 0 && exists && can_copy_into(&file->target)) {
@@ -84,8 +84,7 @@ BpStatus bp_output_open_new(const char *path, BpOutputFile *file, BpError *err) 
     return open_file(path, true, file, err);
 }
 
-/* Makes the new name itself last through a power cut. Not every file system can, so nothing is said if not.
- */
+/* Makes the new name itself survive a power cut. Not every file system can, so failures are ignored. */
 static void sync_folder(const char *target) {
     char *folder = bp_folder_of(target);
     const int descriptor = folder != NULL ? open(folder, O_RDONLY | O_CLOEXEC) : -1;
@@ -105,7 +104,7 @@ static int put_in_place(BpOutputFile *file, int descriptor, char **left) {
         sync_folder(target);
         return 0;
     }
-    /* From here on the file is finished and its place is not free: it must not be lost. */
+    /* From here on the file is finished but cannot replace the target: it must not be lost. */
     if (file->unnamed && bp_temporary_name_elsewhere(descriptor, target, &file->temporary) == 0)
         file->unnamed = false;
     *left = bp_temporary_keep(&file->temporary);

@@ -165,7 +165,7 @@ bool bp_output_target_is_replaced(const BpOutputTarget *target) {
     return target->descriptor < 0 && !target->through && (!target->exists || S_ISREG(target->info.st_mode));
 }
 
-/* What a name leads to, as something that can be compared. */
+/* The identity of the file that a name refers to. */
 typedef struct Identity {
     BpOutputTarget target;
     bool known;

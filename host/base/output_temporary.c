@@ -152,8 +152,7 @@ static int make_name(const char *folder, size_t folder_length, const char *targe
     return made;
 }
 
-/* A file without a name in the folder of `target`; -1 where that cannot be had, or could not be named later.
- */
+/* A file without a name in the folder of `target`; -1 if that is unsupported, or could not be named later. */
 static int create_unnamed(const char *target, mode_t mode) {
     int descriptor = -1;
 #ifdef O_TMPFILE

@@ -116,7 +116,7 @@ static BpStatus step_reference(BpCheck *check, BpError *err) {
     const BpRenderOptions *render = &check->options.render;
     const uint64_t rest = check->target - check->reference_samples;
     const uint64_t samples = check->slice < rest ? check->slice : rest;
-    /* Another generator, and for good measure another seed. */
+    /* Another generator, and also another seed. */
     const BpReferenceOptions options = {.first_sample = render->first_sample + check->reference_samples,
                                         .samples = samples,
                                         .seed = ~render->seed,
@@ -134,7 +134,7 @@ static BpStatus step_reference(BpCheck *check, BpError *err) {
     return BP_OK;
 }
 
-/* How far the picture is from the means of its samples (BpVerdict, picture_off). */
+/* The difference between the picture and the means of its samples (BpVerdict, picture_off). */
 static double picture_off(const BpSums *samples, const BpFilm *picture) {
     const size_t pixels = (size_t)samples->width * samples->height;
     double mean[3] = {0}, off = 0;

@@ -55,9 +55,9 @@ static double rounding(double reference, int moment) {
     return moment * (BP_VERDICT_ROUNDING * fabs(reference) + 1e-7);
 }
 
-/* By how much the variance of a region's mean may well lie above its estimate: three standard errors. If few
- * samples are bright, a mean that is too small mostly comes with a spread that is too small. That evens out
- * if both sides find light in the same way, but not if one side sends rays to lamps. */
+/* The amount by which the variance of a region's mean may exceed its estimate: three standard errors. If few
+ * samples are bright, a mean that is too small mostly has a spread that is too small. That cancels if both
+ * sides find light in the same way, but not if one side samples lights. */
 static double variance_margin(const BpSums *sums, const Region *region, int channel) {
     const double area = (double)(region->right - region->left) * (region->bottom - region->top);
     double variance = 0;
@@ -166,8 +166,8 @@ static void test_families(const BpSums *kernel, const BpSums *reference, BpVerdi
     }
 }
 
-/* How far the ratio of one channel's means may be from 1, by its 95 % interval. Infinite: nothing is known
- * about it. */
+/* The largest distance of one channel's ratio of means from 1, within its 95 % interval. Infinite: unknown.
+ */
 static double ratio_off(const Mean *kernel, const Mean *reference, double *low, double *high) {
     const double z_95 = bp_normal_upper_quantile(0.025);
     if (!bp_ratio_interval(kernel->value, kernel->variance, reference->value, reference->variance, z_95, low,

@@ -137,7 +137,7 @@ BpStatus bp_command_devices(const BpCommandLine *line, BpError *err) {
         } else if (survey.count > 0)
             shown = print_table(line, survey.devices, survey.count, default_number, err);
     } else {
-        if (line->json != NULL) { /* the list of an earlier run would be taken for today's */
+        if (line->json != NULL) { /* else the list of an earlier run would be mistaken for this one's */
             bp_line_say_overwritten(line, line->json);
             (void)write_json(line, &survey, UINT32_MAX, NULL);
         }

@@ -27,7 +27,7 @@ static void print_option(BpOption option, const BpCommand *command, FILE *out) {
     fprintf(out, BP_HANG "%s\n", bp_option_help(option, command, help, sizeof help));
 }
 
-/* Examples are lines to be pasted, each with a remark, that are laid out already. */
+/* Examples are complete command lines with remarks, already laid out. */
 static void print_command_help(const BpCommand *command, FILE *out) {
     fprintf(out, "Usage: ballpark %s%s%s [OPTION]...\n\n", command->name,
             command->operands[0] != '\0' ? " " : "", command->operands);

@@ -49,7 +49,7 @@ static int by_first_sample(const void *a, const void *b) {
 }
 
 static BpStatus add_parts(Parts *parts, const BpFilm *head, size_t file, BpError *err) {
-    /* An empty film counts as one without samples, so that its file is merged, too. */
+    /* An empty film is merged like one without samples. */
     const size_t more = head->range_count > 0 ? head->range_count : 1;
     if (parts->count + more > parts->room) {
         const size_t room = 2 * parts->room + more;
@@ -82,9 +82,9 @@ static BpStatus check_same(const BpCommandLine *line, const BpFilm *head, size_t
                    reason);
 }
 
-enum { NAMED_MAX = 4 }; /* pairs of files, or ranges, that a message names */
+enum { NAMED_MAX = 4 }; /* the most pairs of files, or ranges, in a message */
 
-/* Samples that two files hold would count twice. */
+/* Samples in two files would count twice. */
 static BpStatus check_double(const BpCommandLine *line, const Parts *parts, BpError *err) {
     char pairs[700] = "";
     size_t used = 0, found = 0, widest = 0;

@@ -99,7 +99,7 @@ static BpStatus write_results(const BpCommandLine *line, BpResultFile *file, con
     const BpStatus written = bp_result_write(line, file, result->film, true,
                                              (BpTransfer)result->film->transfer, result->scene, err);
     result->times.write = bp_clock_seconds() - write_start;
-    /* A reader that has left takes the picture with it, but not the statistics. */
+    /* If the picture's reader has left, the statistics are still written. */
     if (written != BP_OK && strcmp(file->path, "-") != 0) return written;
     if (stats != NULL && json_array_append_new(stats, bp_run_stats(result)) != 0)
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for the document %s", line->stats);
@@ -129,14 +129,14 @@ typedef struct Job {
 /* What all scenes share. */
 typedef struct Run {
     BpCommandLine line;
-    BpComm *comm; /* the ranks that share the picture at hand; NULL: none */
+    BpComm *comm; /* the ranks that share the current picture; NULL: none */
     Job *jobs;
     size_t count;
     BpDeviceInfo *devices;
     BpDevice **open; /* the same, open: kernels are built once where programs are equal */
     size_t device_count;
-    json_t *stats; /* a list, by the number of the job; NULL: none are wanted */
-    double start;  /* of the scene at hand, or of the command for the first one */
+    json_t *stats; /* an array by the number of the job; NULL: not requested */
+    double start;  /* of the current scene, or of the command for the first one */
     bool has_begun;
     size_t pictures, incomplete; /* written by this rank; those of them that lack invalid samples */
     char lack[512];              /* the reason why the first of those cannot render */
@@ -182,7 +182,7 @@ static BpStatus load(Run *run, size_t number, BpError *err) {
     return BP_OK;
 }
 
-/* The devices that are meant, tested and open. */
+/* Chooses, tests and opens the devices. */
 static BpStatus find_devices(Run *run, BpError *err) {
     BP_TRY(bp_setup_devices(&run->line, &run->devices, &run->device_count, err));
     BP_TRY(bp_ranks_choose_device(&run->line, &run->devices[0], err));
@@ -268,7 +268,7 @@ done:
     return status;
 }
 
-/* The ranks that do not write a shared picture have no report of it. */
+/* Only the rank that writes a shared picture has a report of it. */
 static void count_picture(Run *run, const BpRunResult *result) {
     const BpRenderReport *report = &result->report;
     char causes[BP_INVALID_TEXT_SIZE];
@@ -280,7 +280,7 @@ static void count_picture(Run *run, const BpRunResult *result) {
                  report->invalid_samples, report->samples, bp_film_invalid_causes(result->film, causes));
 }
 
-/* Invalid samples bias a picture, so a command that made one has failed, though its files are there. */
+/* Invalid samples bias a picture, so the command fails, although its files have been written. */
 static BpStatus check_complete(const Run *run, BpError *err) {
     if (run->incomplete == 0) return BP_OK;
     char others[64] = "";
@@ -417,7 +417,7 @@ static BpStatus render_scenes(Run *run, BpError *err) {
     BpStatus status = BP_OK;
     if (run->line.stats != NULL) BP_TRY(bp_line_check_output(&run->line, run->line.stats, err));
     for (size_t j = 0; j < run->count && status == BP_OK; ++j) status = load(run, j, err);
-    status = bp_comm_all_ok(comm, status, err); /* all have looked before the first file is written */
+    status = bp_comm_all_ok(comm, status, err); /* all ranks have checked before the first file is written */
     for (size_t j = 0; j < run->count && status == BP_OK; ++j) {
         const bool alone = j < dealt;
         if (!alone || bp_ranks_is_mine(comm, j)) {

@@ -20,14 +20,14 @@ static size_t folder_length(const char *path) {
     return slash != NULL ? (size_t)(slash - path) + 1 : 0;
 }
 
-/* Whether files beside `from` are named alike beside `to`. */
+/* Whether `from` and `to` are in the same folder. */
 static bool same_folder(const char *from, const char *to) {
     const size_t length = folder_length(from);
     return length == folder_length(to) && strncmp(from, to, length) == 0;
 }
 
-/* The names of images and of files of particles and meshes as seen from the folder of `to`: unchanged, below
- * that folder, or absolute. */
+/* Makes the paths of images, particles and meshes relative to the folder of `to`: unchanged, below that
+ * folder, or absolute. */
 static BpStatus move_files(BpScene *scene, const char *from, const char *to, BpError *err) {
     if (same_folder(from, to)) return BP_OK;
     for (size_t i = 0; i < scene->image_count; i++) BP_TRY(bp_image_move(from, to, scene->images[i], err));
@@ -46,7 +46,7 @@ BpStatus bp_command_scene(const BpCommandLine *line, BpError *err) {
     BpScene *scene = NULL;
     BP_TRY(bp_line_check_named(line, to, ".json", "a scene is written as a JSON document", err));
     BP_TRY(bp_setup_load(line, path, &scene, err));
-    /* What goes to standard output is read again as seen from the current folder. */
+    /* A document on standard output will be read relative to the current folder. */
     BpStatus status =
         move_files(scene, strcmp(path, "-") == 0 ? "" : path, strcmp(to, "-") == 0 ? "" : to, err);
     if (status == BP_OK) {

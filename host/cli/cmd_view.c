@@ -91,8 +91,8 @@ static char *camera_text(const BpScene *scene) {
     return text;
 }
 
-/* With every option that decides how the picture looks. The camera has those of --width, --fit and
- * --projection. False when there are too many for one command line. */
+/* With every option that affects the picture. The camera has those of --width, --fit and --projection. False
+ * when there are too many for one command line. */
 static bool make_command(const BpCommandLine *line, char *camera, double exposure,
                          char command[BP_COMMAND_TEXT_SIZE]) {
     static const BpOption others[] = {BP_OPTION_ERROR,      BP_OPTION_WIDTH, BP_OPTION_FIT,

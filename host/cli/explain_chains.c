@@ -46,7 +46,7 @@ static BpChainPoint point_of(const BpScene *scene, const BpPathStep *step) {
     return point;
 }
 
-/* Adds what one chain brings, if it brings anything. */
+/* Adds the light of one chain, if there is any. */
 static BpStatus add_chain(const BpScene *scene, const BpChainPoint *point, const double weight[3],
                           const BpChain *chain, BpChainLight *light, BpError *err) {
     BpChainEntry entry = {.chain = *chain};

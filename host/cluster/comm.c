@@ -35,7 +35,7 @@ static BpStatus fail_exchange(const char *fault, BpError *err) {
     return bp_fail(err, BP_ERR_DEVICE, "messages between the ranks: %s", fault);
 }
 
-/* `fault`: what beginning the exchange returned. */
+/* `fault`: the result of beginning the exchange. */
 static BpStatus wait_for(BpComm *comm, const char *fault, BpError *err) {
     const double start = bp_clock_seconds();
     bool done = false;
@@ -135,7 +135,7 @@ typedef struct Story {
     char remedy_value[sizeof((BpError *)0)->remedy_value];
 } Story;
 
-/* On rank 0: puts the story of the first rank that failed into `err`, unless it has one of its own. */
+/* On rank 0: copies the error of the first rank that failed to `err`, unless rank 0 has failed itself. */
 static BpStatus tell(const Story *stories, uint32_t ranks, BpError *err) {
     if (stories[0].status != BP_OK) return (BpStatus)stories[0].status;
     for (uint32_t r = 1; r < ranks; ++r) {
@@ -303,7 +303,7 @@ static BpStatus check_arguments(BpComm *comm, char *const *arguments, BpError *e
 }
 
 static BpStatus open_module(BpComm *comm, const BpLaunch *launch, BpError *err) {
-    /* Libraries of MPI load parts of their own, which look for its symbols. */
+    /* MPI libraries load plugins, which need its symbols. */
     static const BpModuleName name = {"ballpark_mpi.so", "BALLPARK_MPI", BP_TRANSPORT_SYMBOL,
                                       BP_TRANSPORT_VERSION, true};
     const void *transport = NULL;

@@ -9,7 +9,7 @@
 
 enum { TILE_SIDE = 8 };
 
-/* Of a mean of n samples, every pixel gets n / PILOT_SHARE, and none more than REACH times that. */
+/* With a mean of n samples, every pixel gets n / PILOT_SHARE, and none more than REACH times that. */
 #define PILOT_SHARE 4u
 #define REACH_LEVELS 6u /* 2^6 */
 /* An error below this part of the mean error counts as that part: if the few samples of a pixel agree, it
@@ -103,8 +103,9 @@ static BpStatus record(BpAdaptive *adaptive, const BpFilm *film, uint32_t level,
     return BP_OK;
 }
 
-/* The value that decides about `half`: that of the tile's other half, and with half the weight the mean of
- * the halves of the same colour in the tiles around. All of them had the level of `values` at some time. */
+/* The value by which `half` is judged: that of the tile's other half, and with half the weight the mean of
+ * the halves of the same colour in the neighbouring tiles. All of them had the level of `values` at some
+ * time. */
 static double deciding(const BpAdaptive *adaptive, uint32_t half, const float *values) {
     const uint32_t tile = half / 2, colour = 1 - half % 2;
     const uint32_t x = tile % adaptive->tiles_x, y = tile / adaptive->tiles_x;
@@ -170,7 +171,7 @@ static void plan_colour(BpAdaptive *adaptive, uint32_t colour, uint32_t pilot, c
         const uint32_t level = level_for(adaptive, half, pilot, values[half], enough);
         const uint32_t next = level_for(adaptive, half, pilot, values[half], too_low);
         const double more = adaptive->half_pixels[half] * (double)level_samples(level);
-        /* Equal gains, one after the other while there is room. */
+        /* Equal gains, in order while the budget lasts. */
         const bool takes = next > level && more <= left;
         if (takes) left -= more;
         adaptive->wanted[half] = (uint8_t)(level + takes);
@@ -201,7 +202,7 @@ static BpStatus plan(BpAdaptive *adaptive, uint32_t pilot, uint64_t samples, BpE
 
 /* ---- passes ---- */
 
-/* The greatest level that a quarter of `samples` reaches. */
+/* The highest level that a quarter of `samples` reaches. */
 static uint32_t pilot_level(const BpAdaptive *adaptive, uint64_t samples) {
     uint32_t level = 0;
     while (level < adaptive->level_max && level_samples(level + 1) <= samples / PILOT_SHARE) ++level;

@@ -1,4 +1,4 @@
-/* adaptive_save.c: what adaptive sampling has decided, as bytes for a .bpa file, and back; see adaptive.h.
+/* adaptive_save.c: serialises the decisions of adaptive sampling for a .bpa file; see adaptive.h.
  *
  * Layout, little endian: the mean for which the plan was made, 8 bytes; then level, wanted level and whether
  * it is in the pass under way, one byte a half each, all levels first; then for each level up to the highest
@@ -62,7 +62,7 @@ BpStatus bp_adaptive_save(const BpAdaptive *adaptive, uint8_t **bytes, size_t *s
     return BP_OK;
 }
 
-/* Whether the halves can be in such a state; a pass takes those of one level up by one. */
+/* Whether the state of the halves is valid; a pass raises halves of one level by one. */
 static bool halves_fit(const BpAdaptive *adaptive, const uint8_t *level, const uint8_t *wanted,
                        const uint8_t *passing) {
     uint32_t pass_level = BP_ADAPTIVE_LEVELS_MAX;

@@ -113,7 +113,7 @@ bool bp_film_range(const BpFilm *film, size_t index, uint64_t *first, uint64_t *
 
 /* ---- ranges of samples ---- */
 
-/* How many s of [0, end) have s mod K = replicate. */
+/* The number of s in [0, end) with s mod K = replicate. */
 static uint64_t samples_before(uint64_t end, uint32_t replicates, uint32_t replicate) {
     return end / replicates + (end % replicates > replicate ? 1 : 0);
 }

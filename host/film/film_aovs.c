@@ -1,4 +1,4 @@
-/* film_aovs.c: depth, normal and albedo of a film, and of a picture that is made of it; see film.h. */
+/* film_aovs.c: depth, normal and albedo of a film and of its picture; see film.h. */
 #include "film.h"
 
 #include "base/status.h"

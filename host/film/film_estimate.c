@@ -39,8 +39,8 @@ typedef struct Replicates {
     unsigned filled;
 } Replicates;
 
-/* The mean of all replicates but `left_out`, and the squared error that a mean of `samples` has, if they are
- * like those. Two passes, mean first: no difference of large squares. */
+/* The mean of all replicates but `left_out`, and the squared error of a mean of `samples` like theirs. Two
+ * passes, mean first: no difference of large squares. */
 static void estimate_without(const Replicates *replicates, unsigned left_out, double samples, double mean[4],
                              double squared_error[4]) {
     double total = 0;
@@ -89,7 +89,7 @@ static void add_unseen(const BpUnseen *unseen, const BpUnseenWeights *weights, s
     for (int c = 0; c < 4; c++) {
         const double unseen_error = variance * (c < 3 ? (double)unseen->tint[c] : 1);
         const double seen = estimate->squared_error[c];
-        /* fmin: of only two replicates, the one behind has no spread. */
+        /* fmin: with only two replicates, the remaining one has no spread. */
         const double both = found ? fmax(fmin(rest_error[c] * rest_factor + unseen_error, seen), unseen_error)
                                   : seen + unseen_error;
         estimate->squared_error[c] += weight * (both - seen);

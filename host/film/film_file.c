@@ -115,7 +115,7 @@ static uint64_t body_bytes(const Loader *loader, const BpFilm *sizes) {
            (parts->unseen ? pixels * sizeof(BpUnseenPixel) + 3 * sizeof(float) : 0) + parts->decision_bytes;
 }
 
-/* Whether so many numbers can be packed in a file of this length; before anything is allocated. */
+/* Whether a file of this length can hold so many numbers; before anything is allocated. */
 static BpStatus check_length(Loader *loader, const BpFilm *sizes, BpError *err) {
     FILE *in = loader->in;
     if (fseeko(in, 0, SEEK_END) != 0)
@@ -170,7 +170,7 @@ static BpStatus read_counts(BpFilmSource *source, BpFilm *film, BpError *err) {
     return BP_OK;
 }
 
-/* A mean over the rays that met something is infinite where none did. */
+/* A mean over the rays that hit something is infinite if none did. */
 #define IS_GOOD_MET(value) ((value) > -INFINITY)
 #define IS_GOOD_ALL(value) isfinite(value)
 

@@ -14,7 +14,7 @@
 
 /* ---- making ---- */
 
-/* NULL when out of memory, like the header then. */
+/* NULL when out of memory, and so is the header then. */
 static json_t *ranges_json(const BpFilm *film) {
     json_t *list = json_array();
     for (size_t i = 0; i < film->range_count && list != NULL; i++) {
@@ -45,7 +45,7 @@ static json_t *plan_json(const BpFilmPlan *plan) {
                      (json_int_t)plan->decision_bytes);
 }
 
-/* What not every film has; false when out of memory. */
+/* Adds the optional members; false when out of memory. */
 static bool add_optional(json_t *header, const BpFilm *film) {
     if (film->job.count > 0 &&
         json_object_set_new(

@@ -10,8 +10,8 @@
 #define BLOCK 65536u        /* numbers of a block */
 #define PACKED_BYTES 65536u /* at a time */
 #define WIDTH_MAX 8u
-/* Bytes of more bits each than this are stored as they are: packing them would take most of the time, and
- * gain little. */
+/* Planes of more bits per byte than this are stored: packing them would take most of the time, and gain
+ * little. */
 #define PACKED_BITS_MAX 6.0
 
 /* ---- numbers as little-endian bytes, in planes ---- */
@@ -97,8 +97,8 @@ static void pack(BpFilmSink *sink, uint8_t *bytes, size_t size, int flush) {
     } while (sink->zip.avail_out == 0);
 }
 
-/* Bits a byte (Shannon, A Mathematical Theory of Communication, 1948, section 6), of bytes without an order.
- */
+/* Entropy in bits per byte (Shannon, A Mathematical Theory of Communication, 1948, section 6), of bytes
+ * without an order. */
 static double entropy(const uint8_t *bytes, size_t count) {
     uint32_t counts[4][256] = {{0}}; /* four: a byte that equals the one before need not wait for it */
     double sum = 0;

@@ -9,7 +9,7 @@
 
 typedef struct Depths {
     const BpPicture *picture;
-    double nearest, range; /* 0: all that is seen is equally far, or nothing is seen */
+    double nearest, range; /* 0: all visible surfaces are equally far, or there are none */
     double fog;
 } Depths;
 
@@ -52,8 +52,8 @@ static double covered(const Depths *depths, int64_t x, int64_t y, int64_t dx, in
     return fmin(fmax(share, 0), 1) * (1 - fade(depths, there));
 }
 
-/* The share of a pixel's rays that met nothing, where things end before the background: normals of one thing
- * are nearly equal within a pixel, and rays that met nothing count as 0 in their mean. */
+/* The share of a pixel's rays that hit nothing, at silhouettes before the background: normals of one surface
+ * are nearly equal within a pixel, and rays that hit nothing count as 0 in their mean. */
 static double background_share(const BpPicture *picture, size_t pixel) {
     if (picture->normal == NULL || !isfinite(picture->depth[pixel])) return 0;
     const float *const n = &picture->normal[3 * pixel];

@@ -45,8 +45,8 @@ static void lab_to_linear(double lightness, double a, double b, double rgb[3]) {
 }
 
 /* The scale's colour at `position`, 0 to 1: lightness rises evenly, and the hue goes from violet through red
- * to yellow. The chroma is what sRGB can show everywhere on that way, so no colour is clipped and the scale
- * has no edges of its own. */
+ * to yellow. The chroma is within sRGB everywhere on that path, so no colour is clipped and the scale has no
+ * edges. */
 static void scale_color(double position, uint8_t rgb[3]) {
     static const double pi = 3.14159265358979324;
     const double lightness = 10 + 85 * position;
@@ -90,7 +90,7 @@ static uint32_t larger(uint32_t a, uint32_t b) {
 static MapPlan plan_canvas(const BpPicture *picture, BpCanvas *canvas) {
     MapPlan plan;
     plan.zoom = larger(1, SMALL_WIDTH / picture->width);
-    /* A picture of one column is not to become a mile high. */
+    /* Limits the height of very narrow pictures. */
     while (plan.zoom > 1 && plan.zoom * picture->height > 4 * SMALL_WIDTH) plan.zoom--;
     const uint32_t width = plan.zoom * picture->width;
     canvas->width = larger(width, LEGEND_WIDTH);

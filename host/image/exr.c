@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The name is for the library's messages, and for it to unlink after a failure: no file can have it. */
+/* A name that no file can have, for the library's messages and for its unlink after a failure. */
 #define NO_FILE "/dev/null/picture.exr"
 #define LAYERS_MAX (3 + 1 + 3 + 1 + AOV_FLOATS) /* radiance, alpha, error, samples, AOVs */
 
@@ -64,7 +64,7 @@ static void keep_quiet(exr_const_context_t context, exr_result_t code, const cha
     (void)message;
 }
 
-/* Lists `floats` values a pixel, which lie together, as channels that are called by the letters. */
+/* Lists `floats` adjacent values per pixel as channels that are named by the letters. */
 static void list_floats(const char *before, const char *letters, const float *values, size_t floats,
                         Layer layers[LAYERS_MAX], size_t *count) {
     for (size_t c = 0; c < floats && values != NULL; c++) {
@@ -137,8 +137,7 @@ typedef exr_result_t Compress(exr_encode_pipeline_t *);
 
 /* Readers take a block that is as long as its pixels for an uncompressed one. OpenEXRCore 3.1 stores pixels
  * uncompressed if compressing makes them longer, but not if the length stays the same: such a block would be
- * read as noise. Where zlib lacks the memory to compress, it calls the pixels corrupt, as if it had read
- * them. */
+ * read as noise. If zlib is out of memory, the library reports corrupt pixels, as if it had read them. */
 static exr_result_t compress_or_keep(exr_encode_pipeline_t *encoder) {
     Compress *const *const compress = encoder->encoding_user_data;
     const exr_result_t result = (*compress)(encoder);

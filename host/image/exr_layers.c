@@ -11,13 +11,13 @@ enum { LIST_SIZE = 320 };
 
 /* What has been seen of a file's layers. */
 typedef struct Search {
-    BpExrLayer first, named; /* the first that will do; the first called as the whole picture is */
+    BpExrLayer first, named; /* the first suitable layer; the first with a name of the whole picture */
     size_t plain, layers, named_count;
     bool chroma;          /* one has luminance and chroma */
     char list[LIST_SIZE]; /* their names */
 } Search;
 
-/* How long the layer's part of a channel's name is, with the point behind it. */
+/* The length of the layer's part of a channel's name, including the dot. */
 static size_t prefix_length(const char *name) {
     const char *const point = strrchr(name, '.');
     return point != NULL ? (size_t)(point - name) + 1 : 0;

@@ -72,7 +72,7 @@ static void put_tags(png_structp png, png_infop info, BpTransfer transfer, const
     }
 }
 
-/* What is written: a picture, or else 8-bit colours. */
+/* The input: a picture, or else 8-bit colours. */
 typedef struct Image {
     uint32_t width, height;
     const BpPicture *picture;
@@ -145,7 +145,7 @@ static BpStatus write_png(FILE *out, const Image *image, BpError *err) {
         status = bp_output_finish(out, "PNG", err);
     } else {
         const char *reason = ferror(out) ? strerror(failure.error_number) : failure.text;
-        /* libpng has other words for it ("too many text chunks"). */
+        /* libpng reports this differently ("too many text chunks"). */
         if (failure.error_number == ENOMEM)
             status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the PNG encoder");
         else

@@ -67,7 +67,7 @@ static bool to_xyz(const BpPrimaries *from, double out[3][3]) {
     return true;
 }
 
-/* What a white looks like under the other one: von Kries' rule on the cones of Bradford. */
+/* Adaptation from one white to another: von Kries' rule in the cone space of Bradford. */
 static bool adapt(const double from[2], const double to[2], double out[3][3]) {
     double cones[3][3] = {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}};
     double back[3][3], from_xyz[3], to_white[3], a[3], b[3], scaled[3][3];

@@ -163,7 +163,7 @@ void bp_device_close(BpDevice **device) {
     *device = NULL;
 }
 
-/* The program's build log, "" where the driver gives none; NULL without memory. */
+/* The program's build log; "" if the driver has none; NULL: out of memory. */
 static char *fetch_log(const BpDevice *device, cl_program program) {
     size_t size = 0;
     if (clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, 0, NULL, &size) != CL_SUCCESS)
@@ -175,7 +175,7 @@ static char *fetch_log(const BpDevice *device, cl_program program) {
     return text;
 }
 
-/* Looks for the log's first complaint. Compilers built on Clang write "file:line:column: error: text", PoCL
+/* Finds the first error in the log. Compilers built on Clang write "file:line:column: error: text", PoCL
  * "error: file:line:column: text". True when found; `file` and `text` end at the next colon or line. */
 static bool first_complaint(const char *log, char file[128], int *line, int *column, char text[256]) {
     for (const char *at = log; at != NULL && *at != '\0';) {
@@ -224,11 +224,10 @@ static BpStatus build_failure(const BpDevice *device, cl_int code, const char *l
 }
 
 /* Processes that compile at the same time into an empty cache disturb each other in PoCL 3.1: about one build
- * in sixty fails, without a word of the compiler, where eight do so on two cores. The next attempt succeeds.
- */
+ * in sixty fails, without a compiler message, if eight do so on two cores. The next attempt succeeds. */
 #define POCL_ATTEMPTS 8
 
-/* Whether a build failed for a reason that may be gone at the next attempt, rather than for its source. */
+/* Whether a build failed for a transient reason, not because of its source. */
 static bool may_pass(const BpDevice *device, cl_int code, const char *log) {
     char file[128], text[256];
     int line, column;

@@ -40,7 +40,8 @@ static bool any_fits_shown(const BpDeviceInfo *list, size_t count, const char *t
     return false;
 }
 
-/* Appends "; 0: name (platform)" for each device that `text` fits (all for NULL), as far as there is room. */
+/* Appends "; 0: name (platform)" for each device that matches `text` (all for NULL), as far as there is room.
+ */
 static void append_devices(char *to, size_t size, const BpDeviceInfo *list, size_t count, const char *text) {
     const char *separator = "";
     const bool shown = text == NULL || any_fits_shown(list, count, text);
@@ -67,8 +68,8 @@ static int order(uint64_t a, uint64_t b) {
     return (a > b) - (a < b);
 }
 
-/* Above 0: of two GPUs, `a` is the more capable one. The width of a compute unit depends on the vendor: units
- * are compared within a platform (`one_platform`), and between platforms only as a last resort. */
+/* Above 0: GPU `a` is more capable than `b`. The width of a compute unit depends on the vendor: units are
+ * compared within a platform (`one_platform`), and between platforms only as a last resort. */
 static int compare_gpus(const BpDeviceInfo *a, const BpDeviceInfo *b, bool one_platform) {
     const int own_memory = order(b->has_shared_memory, a->has_shared_memory);
     const int memory = order(a->memory_bytes, b->memory_bytes);

@@ -114,7 +114,7 @@ static bool find_lack(cl_device_id id, const BpDeviceInfo *info, char refusal[12
     return true;
 }
 
-/* PoCL looks for vectors on x86 processors alone and reports one lane for all others. 64-bit ARM always has
+/* PoCL detects vectors on x86 processors only and reports one lane for all others. 64-bit ARM always has
  * vectors of four. */
 static unsigned float_lanes_of(cl_device_id id, const BpDeviceInfo *info) {
     const unsigned lanes = device_uint(id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT);
@@ -259,7 +259,7 @@ BpStatus bp_device_find(const char *text, BpDeviceInfo *device, BpError *err) {
     BpStatus status =
         count > 0 ? bp_device_choose(list, count, text, device, err) : fail_without_devices(err);
     free(list);
-    /* Which of the two it was matters to `check` alone. */
+    /* Only `check` distinguishes the two. */
     if (status == BP_ERR_NO_DEVICE || status == BP_ERR_BROKEN_DEVICE) status = BP_ERR_DEVICE;
     if (status != BP_OK && err != NULL) err->code = status;
     return status;

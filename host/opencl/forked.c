@@ -4,7 +4,7 @@
 #include <stdatomic.h>
 #include <unistd.h>
 
-/* The process that has started the drivers; 0: none has. A fork copies this, as it copies the drivers. */
+/* The process that has started the drivers; 0: none. A fork copies this, as it copies the drivers. */
 static atomic_long owner;
 
 bool bp_drivers_left_behind(void) {

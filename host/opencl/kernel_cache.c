@@ -45,8 +45,8 @@ BpStatus bp_kernel_cache_mode(BpKernelCacheMode *mode, BpError *err) {
 
 /* ---- what a program depends on ------------------------------------------------------------------------ */
 
-/* Of the lines that describe the first processor: a home folder may be shared by machines whose devices have
- * the same name. */
+/* A hash of the lines that describe the first processor, since machines whose devices have the same name may
+ * share a home folder. */
 static uint64_t hash_processor(void) {
     static const char *const telling[] = {"model name",      "flags",    "Features",
                                           "CPU implementer", "CPU part", "CPU variant"};
@@ -85,7 +85,7 @@ static char *identify(const BpDevice *device, const char *options) {
     return text;
 }
 
-/* The program's file, heap; NULL without a home for caches. */
+/* The program's file, heap; NULL: the environment names no folder for caches. */
 static char *name_program(const char *identity, const char *source, bool make) {
     const uint64_t hash = bp_hash_text(bp_hash_text(BP_HASH_START, identity), source);
     char *folder = bp_cache_folder(FOLDER, make);
@@ -111,9 +111,9 @@ static bool is_older(struct timespec x, struct timespec y) {
     return x.tv_sec != y.tv_sec ? x.tv_sec < y.tv_sec : x.tv_nsec < y.tv_nsec;
 }
 
-/* Removes the programs that were not used for the longest time, one by one, until the rest has at most
- * `bytes_max`. What a killed process left half-written counts as one. Another process may be at it too: then
- * more goes. */
+/* Removes the least recently used programs until the rest has at most `bytes_max`. A file that a killed
+ * process left half-written counts as one. If another process does the same at this time, more are removed.
+ */
 static void make_room(uint64_t bytes_max) {
     char *folder = bp_cache_folder(FOLDER, false);
     DIR *open = folder != NULL ? opendir(folder) : NULL;
@@ -183,7 +183,7 @@ static char *copy_part(BpCachePart part) {
     return text;
 }
 
-/* NULL: the driver does not take it, or makes something else of it. */
+/* NULL: the driver does not accept it, or builds another program from it. */
 static cl_program revive(const BpDevice *device, const char *options, const BpCachePart parts[PARTS]) {
     cl_int code = CL_SUCCESS, taken = CL_SUCCESS;
     const unsigned char *binary = parts[PART_BINARY].bytes;
@@ -222,7 +222,7 @@ cl_program bp_kernel_cache_load(const BpDevice *device, const char *source, cons
     return program;
 }
 
-/* The program's binary for its one device, heap; NULL where the driver has none to give. */
+/* The program's binary for its one device, heap; NULL if the driver offers none. */
 static unsigned char *fetch_binary(cl_program program, size_t *size) {
     cl_uint devices = 0;
     *size = 0;

@@ -119,7 +119,7 @@ static uint32_t count_ones(uint32_t bits) {
     return count;
 }
 
-/* What a right device answers; `exact` where a column has room for error. */
+/* The answers of a correct device; `exact` if a column allows an error. */
 static void expect(const Inputs *in, uint32_t item, uint32_t row[COLUMN_COUNT], double exact[COLUMN_COUNT]) {
     const uint32_t m = in->uints[2 * item], n = in->uints[2 * item + 1];
     const float *floats = in->floats + 5 * item;
@@ -161,7 +161,7 @@ static bool within(float got, double exact, double ulps) {
     return fabs((double)got - exact) <= ulps * unit;
 }
 
-/* Compares all rows; *failures counts the columns that are wrong, `story` is about the first of them. */
+/* Compares all rows; *failures counts the wrong columns, `story` describes the first of them. */
 static void compare(const Inputs *in, const uint32_t *rows, bool has_double, unsigned *failures, char *story,
                     size_t size) {
     bool wrong[COLUMN_COUNT] = {false};
@@ -223,7 +223,7 @@ static BpStatus launch(BpDevice *device, cl_program program, const Inputs *in, u
     cl_kernel kernel = clCreateKernel(program, "self_test", &code);
     for (cl_uint i = 0; i < 3 && code == CL_SUCCESS; ++i) {
         call = "clCreateBuffer";
-        /* The host's copy of what comes out is 0, so an answer that is never written is wrong. */
+        /* The host's copy of the results is 0, so an answer that is never written is wrong. */
         buffers[i] = clCreateBuffer(device->context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, sizes[i],
                                     (void *)(uintptr_t)contents[i], &code);
         if (code == CL_SUCCESS) {

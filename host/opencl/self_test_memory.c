@@ -51,7 +51,7 @@ BpStatus bp_self_test_once(BpDevice *device, bool *ran, BpError *err) {
     const bool passed_before = text != NULL && size == strlen(identity) && memcmp(text, identity, size) == 0;
     if (ran != NULL) *ran = !passed_before;
     if (!passed_before) status = bp_self_test_run(device, NULL, err);
-    /* A cache that cannot be written only costs the test again. */
+    /* If the cache cannot be written, the test merely runs again. */
     if (!passed_before && status == BP_OK && path != NULL)
         bp_cache_write(path, &(BpCachePart){identity, strlen(identity)}, 1);
     free(text);

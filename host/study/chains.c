@@ -154,7 +154,7 @@ static bool leads_to_lamp(const Search *search, Vec from, Vec direction) {
     return along > 0 && length2(sub(to, scale(along, direction))) < radius * radius;
 }
 
-/* What is found of a way while a lamp's points are tried. */
+/* The state of a way while a lamp's points are tried. */
 typedef struct Found {
     BpChainWay way;
     bool seen;

@@ -94,7 +94,7 @@ static void write_command(const BpScene *scene, BpStudyConfiguration *configurat
     command[0] = '\0';
 #define ADD(...)                                                                                             \
     snprintf(command + strlen(command), sizeof configuration->command - strlen(command), __VA_ARGS__)
-    /* What the program chooses of itself is said where there is a choice. */
+    /* A setting that the program chooses itself is named only if the scene leaves a choice. */
     const BpRenderOptions through = {.caustics = BP_CAUSTICS_ON};
     const bool other_caustics =
         options->caustics != BP_CAUSTICS_AUTO && bp_render_caustics(scene, &through) == BP_CAUSTICS_ON;
@@ -146,7 +146,7 @@ size_t bp_study_configurations(const BpScene *scene, const BpRenderOptions *base
     for (size_t r = 0; r < sizeof rows / sizeof rows[0]; r++) {
         const bool differs = apply(&rows[r], scene, base, &configurations[count]);
         const bool possible = has_double || configurations[count].options.precision == BP_PRECISION_SINGLE;
-        /* The truth is a row of its own even when the base is as good. */
+        /* The truth is a separate row even if the base equals it. */
         if (possible && (differs || r == 0)) count++;
     }
     return count;

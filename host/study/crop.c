@@ -1,4 +1,4 @@
-/* crop.c: the same small window of every picture, and its true error as a map; see crop.h. */
+/* crop.c: windows of pictures and maps of their true errors; see crop.h. */
 #include "crop.h"
 
 #include "base/color.h"
@@ -17,7 +17,7 @@ static uint32_t smaller(uint32_t a, uint32_t b) {
 void bp_study_interest_add(double *interest, const BpPicture *x, const BpPicture *y, double brightness) {
     for (size_t p = 0; p < (size_t)x->width * x->height; p++) {
         const double a = bp_luminance(x->rgb + 3 * p), b = bp_luminance(y->rgb + 3 * p);
-        /* One bright speck is not to outshine everything. */
+        /* A single bright pixel must not dominate. */
         interest[p] += fmin(1, fabs(a - b) / brightness);
     }
 }

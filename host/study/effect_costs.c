@@ -23,8 +23,8 @@ static uint64_t find_registers(const char *log) {
 }
 
 /* Waits for everything that was started. *seconds is the time that the device spent on it: for a CPU the
- * processor time of this process, which other programs hardly disturb; for other devices the time by their
- * own clock. */
+ * processor time of this process, which other load hardly affects; for other devices the time of their own
+ * clock. */
 static BpStatus finish(BpRender *render, double *seconds, BpError *err) {
     BpProgress progress = {0};
     BpRenderReport before, after;
@@ -39,7 +39,7 @@ static BpStatus finish(BpRender *render, double *seconds, BpError *err) {
     return BP_OK;
 }
 
-/* What it takes until a kernel traces: by the wall clock, and in processor time. */
+/* The time until a kernel traces: by the wall clock, and in processor time. */
 typedef struct Start {
     double wall, processor;
 } Start;

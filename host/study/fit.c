@@ -5,7 +5,8 @@
 
 #include <math.h>
 
-/* What makes a configuration better than the base by more than the clock's scatter. */
+/* Another configuration is better than the base at less than this share of its time, which exceeds the
+ * scatter of times. */
 #define CLEARLY_SOONER 0.9
 
 static const double targets[BP_STUDY_TARGETS] = {0.05, 0.01, 0.002};

@@ -15,7 +15,7 @@ static json_t *estimate(const BpStudyEstimate *e) {
                      number(e->high));
 }
 
-/* Appends; a list that cannot grow is given up. */
+/* Appends; a list that cannot grow becomes NULL. */
 static void append(json_t **list, json_t *entry) {
     if (*list != NULL && json_array_append_new(*list, entry) == 0) return;
     if (*list == NULL) json_decref(entry);

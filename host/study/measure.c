@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#define REL_MSE_OFFSET 0.01 /* keeps dark pixels from ruling (pbrt's imgtool) */
+#define REL_MSE_OFFSET 0.01 /* keeps dark pixels from dominating (pbrt's imgtool) */
 #define Z_95 1.959964       /* of the normal distribution */
 
 void bp_study_errors(const BpPicture *x, const BpPicture *r1, const BpPicture *r2, double brightness,

@@ -61,7 +61,7 @@ static BpStatus read_render(BpRender *render, BpPicture *picture, BpError *err) 
     return bp_film_picture(film, picture, err);
 }
 
-/* Continues the reference whose turn it is; *done: it has all samples that are wanted. */
+/* Continues the reference whose turn it is; *done: it has all its samples. */
 static BpStatus trace(BpReferences *references, bool *done, BpError *err) {
     const int r = references->turn;
     if (references->kernel) {

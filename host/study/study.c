@@ -47,11 +47,11 @@ struct BpStudy {
     BpReferences references;
     BpStudyRunner runners[BP_STUDY_CONFIGURATIONS_MAX];
     size_t turn;               /* the current configuration */
-    uint64_t level;            /* samples per pixel that everyone is given now */
+    uint64_t level;            /* samples per pixel of the current level */
     size_t round, round_count; /* of the present level */
     bool last_level;           /* the present one is */
     BpPicture first;           /* of the base, one sample per pixel */
-    double *interest;          /* of every pixel: how much there is to see */
+    double *interest;          /* of every pixel: how much configurations differ there */
     uint32_t crop_left, crop_top;
 };
 
@@ -181,7 +181,7 @@ static bool goes_at_once(const BpStudy *study, size_t s) {
     return study->result.series[s].configuration.options.adaptive;
 }
 
-/* Everyone's next round; another configuration goes first each time. */
+/* The next round of all configurations; each time, another one goes first. */
 static BpStatus begin_round(BpStudy *study, BpError *err) {
     study->turn = (study->result.series[0].count + study->round) % study->result.count;
     for (size_t s = 0; s < study->result.count; s++) {
@@ -228,7 +228,7 @@ static void add_seconds(BpStudy *study) {
 
 /* ---- points ------------------------------------------------------------------------------------------- */
 
-/* Configuration s has one sample per pixel: notes where it differs. */
+/* Configuration s has one sample per pixel: records where it differs. */
 static BpStatus note_first(BpStudy *study, size_t s, BpError *err) {
     BpPicture picture;
     const BpFilm *film = NULL;

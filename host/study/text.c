@@ -103,7 +103,7 @@ const char *bp_study_shortness_text(const BpStudyResult *result, char *text, siz
                  base->points[base->count - 1].samples);
     else if (isnan(bp_study_time_scatter(result)))
         snprintf(least, sizeof least, "it has too few measurements to compare times");
-    double hidden = 0; /* the largest bias that may keep a recommended configuration from its error */
+    double hidden = 0; /* the largest bias above its target that a recommendation may have */
     for (int t = 0; t < BP_STUDY_TARGETS; t++) {
         const BpStudyAdvice *advice = &result->advice[t];
         const double high = result->series[advice->series].bias_square.high;
@@ -128,7 +128,7 @@ const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvic
         return text;
     }
     const BpStudyConfiguration *configuration = &result->series[advice->series].configuration;
-    /* A line to be pasted: a path that a shell would take apart, or standard input, is left to the reader. */
+    /* A line to be pasted: a path that needs quotes, or standard input, is left to the reader. */
     const char *path = result->scene->path;
     char clean[4096];
     const bool plain = strpbrk(path, " \"'\\$`;&|<>()*?[]#~!{}") == NULL &&

@@ -1,11 +1,11 @@
-/* timing.c: what one configuration takes, as a multiple of another, from rounds in turn; see timing.h. */
+/* timing.c: ratios of the times of configurations that take turns; see timing.h. */
 #include "timing.h"
 
 #include "base/quantile.h"
 
 #include <math.h>
 
-#define ROUNDS_MIN 6u /* the fewest whose least and largest hold the median with 95 % */
+#define ROUNDS_MIN 6u /* the fewest rounds whose smallest and largest ratios enclose the median with 95 % */
 
 /* How many values at either end of `count` sorted ones lie outside the 95 % interval of their median: the
  * median lies below the value of rank k, counted from 0, if at most k values do, with the probability of at

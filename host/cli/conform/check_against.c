@@ -56,8 +56,8 @@ static bool same_device(const json_t *one, const json_t *other) {
            strcmp(bp_check_device_text(one, "name"), bp_check_device_text(other, "name")) == 0;
 }
 
-/* The entry in `results` that is of the same device as entry `index` of `own`: the first of equal ones is the
- * first there. NULL: there is none. */
+/* The entry in `results` of the same device as entry `index` of `own`; equal devices match in order. NULL:
+ * there is none. */
 static const json_t *counterpart(const json_t *own, size_t index, const json_t *results) {
     const json_t *entry = json_array_get(own, index);
     size_t before = 0;
@@ -74,8 +74,8 @@ static const char *file_name(const char *path) {
     return slash != NULL ? slash + 1 : path;
 }
 
-/* Documents from before there was "light_sampling" have one check of each scene, and those from before there
- * was "caustics" none with that. */
+/* Documents older than "light_sampling" have one check per scene, and those older than "caustics" none with
+ * that. */
 static bool sampled_alike(const json_t *one, const json_t *other) {
     static const char *const off = "off";
     const char *a = bp_check_text(one, BP_CHECK_SAMPLING), *b = bp_check_text(other, BP_CHECK_SAMPLING);
@@ -119,7 +119,7 @@ static bool agrees(const json_t *entry) {
     return json_is_true(json_object_get(entry, "agree"));
 }
 
-/* Documents from before there was "verdict" said only whether it agreed. */
+/* Documents older than "verdict" have only "agree". */
 static const char *verdict_of(const json_t *entry) {
     const char *verdict = bp_check_text(entry, "verdict");
     if (verdict[0] != '\0') return verdict;
@@ -215,7 +215,7 @@ json_t *bp_check_against(const json_t *scenes, const json_t *earlier, const char
     json_t *against = json_pack("{s:o, s:s, s:i, s:o}", "file", bp_json_text(path), "ballpark",
                                 bp_check_text(earlier, "ballpark"), "regressions", (int)changes.regressions,
                                 "changes", changes.list);
-    /* Without memory, scenes may lack in the list of the earlier ones. */
+    /* Out of memory, the list of earlier scenes may be incomplete. */
     if (!changes.failed && !bp_json_memory_failed()) return against;
     json_decref(against);
     return NULL;

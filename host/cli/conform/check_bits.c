@@ -231,7 +231,7 @@ static BpStatus render_item(const BpDeviceItems *items, size_t number, double se
     BpProgress progress = {0};
     const BpFilm *film = NULL;
     BpStatus status = BP_OK;
-    (void)seconds; /* pictures are small: a limit of time ends the list, never a picture */
+    (void)seconds; /* pictures are small: the time limit ends the list, not a picture */
     if (form->skipped != NULL) {
         *result = form_json(form, device, "skipped");
         json_object_set_new(*result, "reason", json_string(form->skipped));
@@ -338,7 +338,7 @@ const char *bp_check_bits_label(const json_t *entry, char *text, size_t size) {
 void bp_check_bits_print(const json_t *entries, bool quiet, FILE *out) {
     BpCheckCounts counts = {0};
     char title[700], label[256];
-    const char *last = ""; /* a reason that holds for the rest of the list is said once */
+    const char *last = ""; /* a reason that holds for the rest of the list is reported once */
     size_t index;
     json_t *entry;
     fprintf(out, "device %d: %s\n",

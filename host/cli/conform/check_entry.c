@@ -37,7 +37,7 @@ static json_t *test_json(BpVerdictFamily family, const BpVerdictTest *test) {
                      number(test->kernel), "reference", number(test->reference), "by_counts", test->counted);
 }
 
-/* Why a verdict is not "agree"; "" where it is. */
+/* The reason why a verdict is not "agree"; "" if it is. */
 static void explain(const BpVerdict *v, uint64_t samples, uint64_t asked, char *text, size_t size) {
     text[0] = '\0';
     if (v->conclusion == BP_AGREE) return;
@@ -115,7 +115,7 @@ json_t *bp_check_entry_inconclusive(const BpDeviceInfo *device, const char *reas
 
 json_t *bp_check_entry_failed(const BpDeviceInfo *device, const char *reason) {
     json_t *entry = without_result(device, "failed", reason);
-    /* The name that scripts look for when a device gave no result. */
+    /* The member that scripts look for if a device has no result. */
     if (json_object_set_new(entry, "error", bp_json_text(reason)) == 0) return entry;
     json_decref(entry);
     return NULL;

@@ -59,7 +59,7 @@ static const char json_without_memory[] =
     "  \"error\": {\"kind\": \"out of memory\", \"message\": \"out of memory\", \"file\": \"\", \"line\": 0, "
     "\"column\": 0},\n  \"broken_drivers\": []\n}\n";
 
-/* Whether the file is none, empty, or begins as ours do. */
+/* Whether the file does not exist, is empty, or begins like such a document. */
 static bool looks_like(const char *path, const char *begin) {
     char found[16] = "";
     struct stat info;

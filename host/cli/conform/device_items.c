@@ -14,14 +14,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A child ends by itself when its time is up. If a driver's call keeps it from that, it is ended after this.
- */
+/* A child ends by itself at its time limit. If a driver call prevents that, it is killed after this time. */
 #define GRACE_SECONDS 5.0
 
 /* ---- in the child ------------------------------------------------------------------------------------- */
 
-/* Whether there was memory for the line, and for all that is in it: jansson can lose a part without a word.
- */
+/* Whether there was memory for the line and all its parts: jansson can lose one without an error. */
 static bool write_line(json_t *line, FILE *out) {
     char *text = line != NULL ? json_dumps(line, JSON_REAL_PRECISION(17) | JSON_COMPACT) : NULL;
     const bool whole = text != NULL && !bp_json_memory_failed();
@@ -110,7 +108,7 @@ static void read_lines(const BpDeviceItems *items, const char *bytes, BpItemOutc
     }
 }
 
-/* Items of which the child said nothing: the first is the one in which it ended. */
+/* Items without a report of the child: the first is the one during which it ended. */
 static void fill_gaps(const BpDeviceItems *items, const BpChildReport *report, bool interrupted,
                       const char *doing, BpItemOutcome *outcomes) {
     const bool hung = report->end == BP_CHILD_HUNG;

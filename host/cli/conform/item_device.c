@@ -5,7 +5,7 @@
 
 BpStatus bp_item_device_open(BpItemDevice *device, BpError *err) {
     if (device->open != NULL) return BP_OK;
-    /* Every try would take the time that the first one took. */
+    /* Every further attempt would take as long as the first. */
     if (bp_long_call_hangs())
         return bp_fail(err, BP_ERR_BROKEN_DEVICE, "not reached, since the device failed earlier (hung)");
     return bp_device_open_part(device->info, device->threads, &device->open, err);

@@ -30,7 +30,7 @@ static bool name_beside(const char *picture, char *path, size_t size) {
     return (size_t)snprintf(path, size, "%.*s.bpa", stem, picture) < size;
 }
 
-/* A file at the place of the checkpoint is somebody's: of a render that was killed, mostly. */
+/* A file at the checkpoint's path is valuable: it is mostly of a render that was killed. */
 static BpStatus check_free(const BpCheckpoint *checkpoint, BpError *err) {
     BpFilm *film = NULL;
     if (access(checkpoint->path, F_OK) != 0) return BP_OK;
@@ -96,7 +96,7 @@ void bp_checkpoint_start(BpCheckpoint *checkpoint) {
 /* A film on its way to the file. */
 typedef struct BpCheckpointWriter {
     pthread_t thread;
-    bool threaded; /* else it is done already: there was no thread to be had */
+    bool threaded; /* else it is done already, since no thread could be created */
     atomic_bool done;
     const char *path;
     bool new_only;
@@ -172,7 +172,7 @@ BpStatus bp_checkpoint_begin(BpCheckpoint *checkpoint, BpRender *render, BpError
     }
     BpError fault = {0};
     const BpStatus status = take_film(checkpoint, render, &checkpoint->writer, &fault);
-    /* Other ranks have begun to send what this one cannot take. */
+    /* Other ranks have begun to send sums that this one cannot hold. */
     const bool bearable = status == BP_ERR_MEMORY && !checkpoint->is_shared;
     if (status == BP_OK) {
         Writer *writer = checkpoint->writer;

@@ -38,7 +38,7 @@ static BpStatus check_options(const BpCommandLine *line, BpError *err) {
     return BP_OK;
 }
 
-/* The frames that --frames means, of `count` that there are. */
+/* The frames that --frames selects out of `count`. */
 static BpStatus choose_frames(BpSeries *series, uint64_t count, BpError *err) {
     const BpSlice *const slice = &series->line->frames;
     const int64_t all = count < INT64_MAX ? (int64_t)count : INT64_MAX;
@@ -154,7 +154,7 @@ BpStatus bp_series_line(BpSeries *series, BpCommandLine *line, BpError *err) {
     const char *const joint = has_folder && folder[strlen(folder) - 1] != '/' ? "/" : "";
     const char *name = named ? line->output : line->operands[0];
     const char *const slash = strrchr(name, '/');
-    if (!named && slash != NULL) name = slash + 1; /* in the current folder, or the one that is named */
+    if (!named && slash != NULL) name = slash + 1; /* in the current folder, or the one of --output */
     size_t stem = strlen(name);
     if (!named && stem > 3 && strcmp(name + stem - 3, ".gz") == 0) stem -= 3;
     const size_t base = named && slash != NULL ? (size_t)(slash - name) + 1 : 0;

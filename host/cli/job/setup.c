@@ -47,7 +47,7 @@ static void say_fresnel(const BpCommandLine *line, const size_t counts[2]) {
                counts[0], counts[1], bp_plural(counts[1]));
 }
 
-/* A misspelt name adds a material that nothing has. */
+/* A misspelt name adds a material that no sphere uses. */
 static void say_unused_material(const BpCommandLine *line, const char *set, const BpScene *scene) {
     static const char list[] = "materials.";
     if (strncmp(set, list, sizeof list - 1) != 0) return;
@@ -198,7 +198,7 @@ static bool try_device(void *argument, FILE *out) {
 }
 
 /* PoCL may need a linker, and ends the process if PATH has none. In that case this tries a kernel on the
- * device that `name` means in a child process. */
+ * device that `name` selects, in a child process. */
 static BpStatus try_without_linker(const char *name, BpError *err) {
     char copy[256];
     BpChildReport report;
@@ -210,7 +210,7 @@ static BpStatus try_without_linker(const char *name, BpError *err) {
     return bp_fail(err, BP_ERR_DEVICE, "the OpenCL driver %s", report.failure);
 }
 
-/* Of the drivers that are left, where some are broken. */
+/* Of the remaining drivers, if some are broken. */
 static BpStatus find_device(const BpDeviceSurvey *survey, const char *name, BpDeviceInfo **devices,
                             size_t *count, BpError *err) {
     *devices = malloc(sizeof **devices);
@@ -242,7 +242,7 @@ done:
     return status;
 }
 
-/* --threads is a wish: a GPU has no threads to be counted, and not every driver divides its device. */
+/* --threads is a hint: a GPU does not count threads, and not every driver can divide its device. */
 static void say_threads(const BpCommandLine *line, const BpDeviceInfo *device, uint32_t used) {
     if (line->threads == 0 || used == line->threads) return;
     if (device->type != BP_DEVICE_CPU)

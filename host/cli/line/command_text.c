@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Appends a word as a shell reads it; false when it does not fit. */
+/* Appends a word, quoted for a shell; false if it does not fit. */
 static bool append_word(char *text, size_t size, const char *word) {
     static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./,:=+@%-";
     size_t used = strlen(text);

@@ -26,7 +26,7 @@ static void list_results(const BpCommandLine *line, const char *picture, Result 
     if (line->output == NULL) results[BP_OPTION_OUTPUT] = (Result){"the picture", picture};
 }
 
-/* Whether the operands are files, and not names of something to be made. */
+/* Whether the operands are files, not names of generators. */
 static bool reads_files(const BpCommandLine *line) {
     return strcmp(line->command->name, "generate") != 0 && strcmp(line->command->name, "help") != 0;
 }

@@ -203,7 +203,7 @@ BpStatus bp_option_store(BpOption option, const char *text, BpCommandLine *line,
     return BP_OK;
 }
 
-/* The value as it was given, or one that is read as the same. */
+/* The value as given, or an equivalent one. */
 static void show_value(const OptionRow *row, const void *member, char *text, size_t size) {
     uint64_t wide = 0;
     uint32_t narrow = 0;

@@ -21,8 +21,8 @@ static void list_commands(BpOption option, char *text, size_t size) {
                                      bp_commands[c].name);
 }
 
-/* What does the same as an option that other renderers have, or had another name before; NULL for others, and
- * where the command has none of it. */
+/* Advice for an option of other renderers, or with an earlier name; NULL for others, and if the command does
+ * not accept its equivalent. */
 static const char *instead_of(const char *name, const BpCommand *command) {
     static const char shape[] =
         "the height follows from --width and the scene's \"aspect_ratio\" or \"image_height\"";

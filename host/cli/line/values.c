@@ -24,8 +24,7 @@ BpStatus bp_value_whole(const char *option, const char *text, uint64_t min, uint
     return BP_OK;
 }
 
-/* The number that `text` begins with, in C's spelling without hexadecimal, infinity and NaN, and where it
- * ends; false: none. */
+/* Parses the number at the start of `text`, in C's decimal notation, and sets its end; false: none. */
 static bool read_number(const char *text, double *number, const char **end) {
     char digits[64];
     const size_t length = strspn(text, "+-.0123456789eE");
@@ -77,7 +76,7 @@ BpStatus bp_value_time(const char *option, const char *text, double min, double 
         size_t u = 0;
         good = read_number(at, &number, &end) && number >= 0;
         while (good && u < UNITS && strncmp(end, units[u].name, strlen(units[u].name)) != 0) ++u;
-        /* Without a unit only as the whole of it: "1h30" could be minutes or seconds. */
+        /* A number without a unit must be the whole value: "1h30" could mean minutes or seconds. */
         const bool bare = good && u == UNITS;
         if (bare) good = at == text && *end == '\0';
         const double unit = u < UNITS ? units[u].seconds : 1;
@@ -110,7 +109,7 @@ BpStatus bp_value_choice(const char *option, const char *text, const char *const
     return bp_fail(err, BP_ERR_USAGE, "%s: expected %s, found \"%.80s\"", option, list, text);
 }
 
-/* Cuts the text at `mark` into two numbers' texts. */
+/* Splits the text at `mark` into two numbers. */
 static BpStatus cut(const char *option, const char *text, char mark, const char *expected, char first[32],
                     const char **second, BpError *err) {
     const char *at = strchr(text, mark);

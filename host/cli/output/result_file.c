@@ -71,8 +71,7 @@ bool bp_result_is_folder(const char *path) {
     return (length > 0 && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
 }
 
-/* Whether the option names a folder for files that are named after their scenes; one file would not do for
- * several. */
+/* Whether the option names a folder, for files that are named after their scenes; several scenes need one. */
 static BpStatus find_folder(const BpCommandLine *line, const char *option, const char *path, bool *folder,
                             BpError *err) {
     *folder = renders(line) && bp_result_is_folder(path);
@@ -174,7 +173,7 @@ BpStatus bp_result_choose(const BpCommandLine *line, const char *source, BpResul
     BP_TRY(check_figure(line, result->format, err));
     BP_TRY(choose_error_map(line, source, result, err));
     const BpCommandLine own = bp_result_line(line, result);
-    /* What the command line names itself has been compared already, and its messages name the options. */
+    /* Files on the command line have been compared already, with messages that name the options. */
     if (line->output == NULL) {
         BpCommandLine unnamed = own;
         unnamed.output = NULL;

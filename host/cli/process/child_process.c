@@ -25,7 +25,7 @@ enum { CHILD_DONE = 113, CHILD_FAILED = 114 };
 /* How often the parent polls for an interruption, and after how many polls it signals the child again. */
 enum { LOOK_MS = 100, LOOKS_PER_SIGNAL = 10 };
 
-/* Nobody would wait for the child once the parent is gone, also by a signal that cannot be caught. */
+/* Ends the child with the parent, even if a signal that cannot be caught ends that. */
 static void end_with_parent(pid_t parent) {
 #ifdef __linux__
     prctl(PR_SET_PDEATHSIG, SIGTERM);
@@ -47,9 +47,9 @@ static _Noreturn void be_child(bool (*work)(void *argument, FILE *out), void *ar
     _exit(good && written ? CHILD_DONE : CHILD_FAILED);
 }
 
-/* Waits until the child has written something or ended. A signal may have come to the parent alone: it is
- * handed on. A child that does not heed the first, in a driver's long call, ends at once by the second.
- * False: the time was up. */
+/* Waits until the child has written something or ended. A signal that reached the parent alone is forwarded.
+ * A child that does not react to the first, during a driver's long call, is ended by the second. False: the
+ * time limit was reached. */
 static bool wait_for_child(int descriptor, pid_t child, double deadline) {
     struct pollfd end = {.fd = descriptor, .events = POLLIN};
     for (unsigned looks = 0; poll(&end, 1, LOOK_MS) <= 0;) {

@@ -35,7 +35,7 @@ static bool list_in_child(void *argument, FILE *out) {
     return good;
 }
 
-/* Takes over the list of a child that has done its work. */
+/* Parses the list of a child that has finished. */
 static void keep_list(BpChildReport *report, BpDeviceSurvey *survey) {
     survey->devices = (BpDeviceInfo *)(void *)report->bytes;
     survey->count = report->size / sizeof *survey->devices;
@@ -104,7 +104,7 @@ static BpStatus try_each(const BpDriverFiles *drivers, double seconds, bool quie
     return status;
 }
 
-/* `failure`: what asking all at once has come to. */
+/* `failure`: the result of trying all at once. */
 static BpStatus survey_each(double seconds, bool quiet, const char *failure, BpDeviceSurvey *survey,
                             BpError *err) {
     BpChildReport report;

@@ -20,7 +20,7 @@
 #include <sys/syscall.h>
 #endif
 
-/* Tells the program that it was started again, and why. */
+/* In the environment of a restarted program: the reason. */
 #define AGAIN "BALLPARK_DRIVERS_ONE_BY_ONE"
 
 static const struct {
@@ -36,7 +36,7 @@ enum { FAULTS = sizeof faults / sizeof faults[0] };
 /* What a handler of signals needs. */
 static struct {
     char **argv;
-    pid_t process; /* a driver's own children inherit the handlers, and are none of our business */
+    pid_t process; /* a driver's own children inherit the handlers, and must not be affected */
     struct sigaction before[FAULTS], of_driver[FAULTS]; /* who handled them until this did */
     bool is_watching, has_passed_on;
     bool may_restart, is_input_lost, quiet;
@@ -125,8 +125,7 @@ static _Noreturn void leave(int status, const char *caller) {
     for (;;) syscall(SYS_exit_group, status);
 }
 
-/* These end a process without asking anybody. The drivers that are loaded find the program's functions before
- * those of the C library. */
+/* These end a process at once. Loaded drivers find the program's functions before those of the C library. */
 #define VISIBLE __attribute__((visibility("default")))
 VISIBLE _Noreturn void _exit(int status) {
     leave(status, __builtin_return_address(0));
@@ -140,8 +139,7 @@ VISIBLE _Noreturn void _Exit(int status) {
 /* ------------------------------------------------------------------------------------------------------- */
 
 /* A driver may install handlers of its own when it starts (LLVM does), after which abort() would end the
- * program without asking this one. So this is done again and again while they start, and once more at the
- * end. */
+ * program without calling this one. So this is repeated while they start, and once more at the end. */
 static void watch_for_faults(void) {
     struct sigaction action = {.sa_sigaction = on_fault, .sa_flags = SA_SIGINFO | SA_NODEFER | SA_ONSTACK},
                      found;
@@ -200,7 +198,7 @@ BpStatus bp_driver_care_start(const BpCommandLine *line, BpError *err) {
     const bool again = getenv(AGAIN) != NULL;
     double seconds;
     BP_TRY(bp_driver_seconds(&seconds, err));
-    /* Of several processes that share a job, none can start again without the others. */
+    /* One of several processes that share a job cannot restart alone. */
     care.may_restart = !again && line->comm == NULL && care.argv != NULL && !care.is_input_lost;
     care.quiet = line->quiet;
     if (care.process == 0) {

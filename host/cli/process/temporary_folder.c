@@ -21,7 +21,7 @@ static void remove_files(const char *path) {
     rmdir(path);
 }
 
-/* What the keeper answers: the folder, or why there is none. */
+/* The keeper's answer: the folder, or the reason why there is none. */
 typedef struct Answer {
     int failed; /* errno, 0: made */
     char path[sizeof((BpTemporaryFolder *)0)->path];

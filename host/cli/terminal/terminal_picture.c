@@ -30,7 +30,7 @@ static bool variable_has(const char *name, const char *part) {
     return found != NULL && strstr(found, part) != NULL;
 }
 
-/* The answer to "what are you" (DA1: ESC [ ? 62 ; 4 ; ... c) names sixels as 4. */
+/* In the answer to a query of device attributes (DA1: ESC [ ? 62 ; 4 ; ... c), 4 means sixels. */
 static bool names_sixels(const char *answer) {
     const char *at = strstr(answer, "\033[?");
     if (at == NULL || strchr(at, 'c') == NULL) return false;
@@ -50,7 +50,7 @@ static bool ask_for_sixels(void) {
     size_t used = 0;
     const int terminal = open("/dev/tty", O_RDWR | O_NOCTTY | O_CLOEXEC);
     if (terminal < 0) return false;
-    /* A job in the background would be stopped by asking. */
+    /* A query would stop a job in the background. */
     if (tcgetpgrp(terminal) != getpgrp() || tcgetattr(terminal, &before) != 0) {
         close(terminal);
         return false;
@@ -323,7 +323,7 @@ BpStatus bp_terminal_picture_draw(BpTerminalPicture *shown, const BpPicture *pic
     size_t length = 0;
     Size size = choose_size(picture, shown->graphics == BP_GRAPHICS_BLOCKS ? 8 : 4);
     bool made = false;
-    /* In one piece, so that the terminal does not show half of it. */
+    /* By one write, so that the terminal does not show half of it. */
     FILE *out = open_memstream(&text, &length);
     if (out == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for --show");
     fputs("\r\033[K", out); /* the status line */

@@ -74,7 +74,7 @@ static const char *test(bool *done) {
     return fault;
 }
 
-/* In blocks: a rank that adds the sums of others keeps only so many of them at a time. */
+/* In blocks, which limits the memory for the sums of other ranks. */
 static const char *add(void *numbers, uint64_t count, uint32_t width) {
     MPI_Datatype type = width == 8 ? MPI_INT64_T : MPI_UINT32_T;
     for (uint64_t done = 0; done < count; done += ADD_NUMBERS) {
