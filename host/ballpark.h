@@ -213,6 +213,9 @@ typedef struct BpMeshSet {
                       none */
     const char *material; /* Optional. A name from the scene's "materials"; NULL: matte */
     const char *name;     /* Optional. What messages call the mesh; NULL: "the mesh" */
+    BpRows normal;   /* of vertices; 3 columns, of any length, zeros where one is missing: the mesh is smooth.
+                        data   NULL: none */
+    uint32_t smooth; /* 1: also without them, by those of its faces */
 } BpMeshSet;
 
 /* The same with `mesh_count` meshes after the triangles that the document names. Triangles without an area

@@ -247,6 +247,8 @@ typedef struct PackedVariation {
  * In an empty lane all three are NaN, which no ray meets. The index of a triangle in `slot_sphere` is
  * the number of spheres and its own number among the triangles. */
 #define TRIANGLE_REALS(width) (9 * (width))
+/* If a triangle of the scene is smooth, all have an entry in `triangle_normals`, at the places of the
+ * vertices in `triangles`: the unit normals there, or zeros where a triangle is flat. */
 /* How far a leaf's spheres move while the shutter is open: width reals each of x, y, z; -0 where they do not,
  * which leaves every centre as it is. Empty where no sphere of the scene moves and no kernel asks. */
 #define MOTION_REALS(width) (3 * (width))
@@ -359,6 +361,9 @@ typedef struct PackedVariation {
  * `coloured_slots`. */
 #define SCENE_ARRAYS_OF_TRIANGLES(X)                                                                         \
     X(REALS, real, triangles, triangle_leaves * TRIANGLE_REALS(width), "the triangles")
+/* Of kernels that know normals at vertices: after those, and `normal_leaves` after `first_triangles`. */
+#define SCENE_ARRAYS_OF_NORMALS(X)                                                                           \
+    X(REALS, real, triangle_normals, normal_leaves * TRIANGLE_REALS(width), "the triangles' normals")
 #define SCENE_NUMBERS(X)                                                                                     \
     X(first_leaves) X(leaf_count) X(pixel_center) X(max_depth) X(seed_low) X(seed_high) X(replicates) X(width)
 /* clang-format on */

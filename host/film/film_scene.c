@@ -279,6 +279,8 @@ uint64_t bp_scene_hash(const BpScene *scene) {
         known = triangle->material;
         for (int k = 0; k < 3; k++) hash = mix_reals(mix(hash, material_hash), triangle->vertices[k], 3);
         hash = mix_colours(hash, scene, &scene->materials[triangle->material], triangle->albedo);
+        const float(*const normals)[3] = bp_triangle_normals(scene, i);
+        for (int k = 0; k < 9 && normals != NULL; k++) hash = mix_real(hash, (double)normals[k / 3][k % 3]);
     }
     return hash;
 }

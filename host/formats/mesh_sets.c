@@ -20,11 +20,13 @@ static bool is_array(const BpRows *rows) {
 static BpStatus check_set(const BpMeshSet *set, BpError *err) {
     const bool whole = set->vertex_count == 0 || is_array(&set->vertex),
                cut = set->triangle_count == 0 || set->triangle != NULL;
-    if (!whole || !cut || (set->color.data != NULL && !is_array(&set->color)))
+    const bool normals = set->normal.data == NULL || is_array(&set->normal);
+    if (!whole || !cut || !normals || (set->color.data != NULL && !is_array(&set->color)))
         return bp_fail(err, BP_ERR_USAGE, "%s: found no numbers for %s, expected some", name_of(set),
-                       !whole ? "vertices"
-                       : !cut ? "triangles"
-                              : "colours");
+                       !whole     ? "vertices"
+                       : !cut     ? "triangles"
+                       : !normals ? "normals"
+                                  : "colours");
     if (set->vertex_count > BP_MESH_COUNT_MAX || set->triangle_count > BP_MESH_COUNT_MAX)
         return bp_fail(err, BP_ERR_SCENE, "%s: found more than %u vertices or triangles, expected fewer",
                        name_of(set), BP_MESH_COUNT_MAX);
@@ -36,8 +38,11 @@ static BpStatus make_room(const BpMeshSet *set, BpMesh *mesh, BpError *err) {
     mesh->faces = malloc((set->triangle_count + 1) * sizeof *mesh->faces);
     if (set->color.data != NULL)
         mesh->face_colors = malloc((set->triangle_count + 1) * sizeof *mesh->face_colors);
+    if (set->normal.data != NULL)
+        mesh->face_normals = malloc((set->triangle_count + 1) * sizeof *mesh->face_normals);
     if (mesh->positions != NULL && mesh->faces != NULL &&
-        (set->color.data == NULL || mesh->face_colors != NULL))
+        (set->color.data == NULL || mesh->face_colors != NULL) &&
+        (set->normal.data == NULL || mesh->face_normals != NULL))
         return BP_OK;
     return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu triangles", set->triangle_count);
 }
@@ -52,6 +57,18 @@ static BpStatus read_vertices(const BpMeshSet *set, BpMesh *mesh, BpError *err) 
                                v, name_of(set), place);
             mesh->positions[v][a] = place;
         }
+    return BP_OK;
+}
+
+static BpStatus read_normal(const BpMeshSet *set, size_t vertex, float normal[3], BpError *err) {
+    for (int a = 0; a < 3; a++) {
+        const double part = bp_rows_number(&set->normal, vertex, a);
+        if (!(fabs(part) <= BP_VERTEX_MAX))
+            return bp_fail(err, BP_ERR_SCENE,
+                           "vertex %zu (from 0) of %s: normal: found %g, expected numbers from -1e9 to 1e9",
+                           vertex, name_of(set), part);
+        normal[a] = (float)part;
+    }
     return BP_OK;
 }
 
@@ -77,6 +94,8 @@ static BpStatus read_triangle(const BpMeshSet *set, size_t t, BpMesh *mesh, BpEr
                 name_of(set), share);
         mesh->face_colors[mesh->face_count][c] = (float)share;
     }
+    for (int k = 0; k < 3 && mesh->face_normals != NULL; k++)
+        BP_TRY(read_normal(set, corners[k], mesh->face_normals[mesh->face_count][k], err));
     memcpy(mesh->faces[mesh->face_count++], corners, sizeof *mesh->faces);
     return BP_OK;
 }
@@ -103,6 +122,7 @@ static BpStatus find_material(const BpMeshSet *set, const BpMaterialIndex *index
 static BpStatus add_set(const BpMeshSet *set, const BpMaterialIndex *index, BpScene *scene, BpError *err) {
     BpMesh mesh = {0};
     BpMeshUse use = {.name = name_of(set),
+                     .smooth = set->normal.data != NULL || set->smooth != 0,
                      .placement = bp_placement((const double[3]){1, 1, 1}, (const double[3]){0, 0, 0},
                                                (const double[3]){0, 0, 0})};
     const size_t first = scene->triangle_count;

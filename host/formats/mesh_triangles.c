@@ -4,7 +4,9 @@
 #include "base/format.h"
 #include "base/plural.h"
 #include "scene/material.h"
+#include "scene/triangle_area.h"
 #include "scene/triangle_rules.h"
+#include "scene/vertex_normals.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -115,6 +117,41 @@ static BpStatus make_room(const BpMesh *mesh, const BpMeshUse *use, bool colored
     return BP_OK;
 }
 
+/* Those of the file where they belong, or those that the faces give. A corner without one has that of its
+ * face. */
+static BpStatus make_normals(BpMesh *mesh, const BpMeshUse *use, BpScene *scene, BpError *err) {
+    if (!use->smooth) return BP_OK;
+    BP_TRY(bp_scene_make_normals(scene, scene->triangle_count + mesh->face_count, err));
+    if (mesh->face_normals == NULL) {
+        mesh->face_normals = calloc(mesh->face_count + 1, sizeof *mesh->face_normals);
+        if (mesh->face_normals == NULL)
+            return bp_fail(err, BP_ERR_MEMORY, "out of memory for the normals of %zu triangles",
+                           mesh->face_count);
+        return bp_vertex_normals((const double(*)[3])mesh->positions, mesh->vertex_count,
+                                 (const uint32_t(*)[3])mesh->faces, mesh->face_count, mesh->face_normals,
+                                 err);
+    }
+    for (size_t f = 0; f < mesh->face_count; f++)
+        for (int k = 0; k < 3; k++) {
+            float *const normal = mesh->face_normals[f][k];
+            double direction[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
+            bp_place_normal(&use->placement, direction);
+            bp_unit_normal(direction, normal);
+        }
+    return BP_OK;
+}
+
+static void put_normals(const BpMesh *mesh, size_t face, bool mirrored, const BpTriangle *triangle,
+                        float (*normals)[3]) {
+    double area[3];
+    bp_triangle_area(triangle, area);
+    for (int k = 0; k < 3; k++) {
+        const float *const own = mesh->face_normals[face][mirrored && k > 0 ? 3 - k : k];
+        memcpy(normals[k], own, sizeof normals[k]);
+        if (own[0] == 0 && own[1] == 0 && own[2] == 0) bp_unit_normal(area, normals[k]);
+    }
+}
+
 /* Returns how many were left out, since they have no area where they stand. */
 static size_t add_faces(const BpMesh *mesh, const BpMeshUse *use, bool colored, BpScene *scene,
                         size_t *colors_used) {
@@ -133,13 +170,14 @@ static size_t add_faces(const BpMesh *mesh, const BpMeshUse *use, bool colored, 
             triangle->albedo = (uint32_t)scene->albedo_count++;
             ++*colors_used;
         }
+        if (use->smooth) put_normals(mesh, f, mirrored, triangle, scene->normals[scene->triangle_count]);
         scene->triangle_count++;
     }
     return mesh->face_count - (scene->triangle_count - first);
 }
 
-static BpStatus add_note(const BpMesh *mesh, const BpMeshUse *use, size_t left_out, size_t colors_used,
-                         BpScene *scene, BpError *err) {
+static BpStatus add_note(const BpMesh *mesh, const BpMeshUse *use, bool own_normals, size_t left_out,
+                         size_t colors_used, BpScene *scene, BpError *err) {
     char text[1024], vertices[32], triangles[32], out[32];
     const size_t added = mesh->face_count - left_out;
     size_t used = (size_t)snprintf(text, sizeof text, "%s vertices, %s triangle%s",
@@ -149,6 +187,12 @@ static BpStatus add_note(const BpMesh *mesh, const BpMeshUse *use, size_t left_o
         used += (size_t)snprintf(text + used, sizeof text - used,
                                  "; %s triangle%s without an area where the mesh stands left out",
                                  bp_format_whole(left_out, out, sizeof out), bp_plural(left_out));
+    if (use->smooth)
+        used += (size_t)snprintf(text + used, sizeof text - used, "; smooth, by %s",
+                                 own_normals ? "its own normals" : "the means of its faces' normals");
+    else if (own_normals)
+        used += (size_t)snprintf(text + used, sizeof text - used,
+                                 "; its normals are left out, \"smooth\": true shows them");
     if (mesh->face_colors == NULL && mesh->vertex_colors != NULL && colors_used > 0)
         used += (size_t)snprintf(text + used, sizeof text - used,
                                  "; each triangle has the mean of the colours of its vertices");
@@ -168,6 +212,8 @@ BpStatus bp_mesh_add_triangles(BpMesh *mesh, const BpMeshUse *use, BpScene *scen
     BP_TRY(check_glass(mesh, use, scene, err));
     BP_TRY(make_room(mesh, use, colored, scene, err));
     for (size_t v = 0; v < mesh->vertex_count; v++) bp_place_point(&use->placement, mesh->positions[v]);
+    const bool own = mesh->face_normals != NULL;
+    BP_TRY(make_normals(mesh, use, scene, err));
     const size_t left_out = add_faces(mesh, use, colored, scene, &colors_used);
-    return add_note(mesh, use, left_out, colors_used, scene, err);
+    return add_note(mesh, use, own, left_out, colors_used, scene, err);
 }

@@ -14,6 +14,7 @@ typedef struct BpMeshUse {
     BpPlacement placement;
     uint32_t
         material; /* of faces that none of `materials` is for, into the scene's; UINT32_MAX: there is none */
+    bool smooth;  /* by the mesh's normals, or by those of its faces where it has none */
     const uint32_t *materials; /* Optional: for each of the mesh's own, one of the scene's, or UINT32_MAX */
 } BpMeshUse;
 

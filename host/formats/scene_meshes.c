@@ -13,7 +13,6 @@
 /* What meshes of other programs have. */
 static BpStatus refuse_later(const BpNode *node, BpError *err) {
     static const char *const members[][2] = {
-        {"smooth", "normals are those of the faces; remove it, and smooth the mesh by more triangles"},
         {"interior", "media inside meshes are not rendered yet; remove it, or use a sphere as the boundary"},
         {"motion", "meshes stand still while the shutter is open; remove it"},
         {"translate_end", "meshes stand still while the shutter is open; remove it"},
@@ -141,7 +140,8 @@ static BpStatus read_mesh(const BpNode *node, const BpMaterialIndex *index, BpMe
 
 static BpStatus parse_mesh(const BpNode *node, const BpMaterialIndex *index, const BpSceneChanges *changes,
                            BpScene *scene, BpError *err) {
-    static const char *const names[] = {"file", "material", "materials", "scale", "rotate", "translate"};
+    static const char *const names[] = {"file",   "material",  "materials", "scale",
+                                        "rotate", "translate", "smooth"};
     if (!json_is_object(node->value))
         return bp_node_wrong(node, "an object: { \"file\": \"bunny.ply\", \"material\": ... }", err);
     BP_TRY(refuse_later(node, err));
@@ -151,7 +151,9 @@ static BpStatus parse_mesh(const BpNode *node, const BpMaterialIndex *index, con
     const BpNode file = bp_node_member(node, "file"), material = bp_node_member(node, "material"),
                  materials = bp_node_member(node, "materials");
     BpMeshUse use = {.material = UINT32_MAX};
+    const BpNode smooth = bp_node_member(node, "smooth");
     BP_TRY(bp_node_string(&file, &use.name, err));
+    BP_TRY(bp_node_boolean(&smooth, &use.smooth, err));
     BP_TRY(parse_placement(node, &use.placement, err));
     if (material.value != NULL) BP_TRY(bp_parse_material_name(&material, index, &use.material, err));
     if (materials.value != NULL && !json_is_object(materials.value))

@@ -2,6 +2,7 @@
 #include "scene_triangles.h"
 
 #include "scene/placement.h"
+#include "scene/vertex_normals.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -36,7 +37,7 @@ static void put(BpTriangle *triangle, const double *a, const double *b, const do
 
 static BpStatus parse_triangle(const BpNode *node, const BpMaterialIndex *index, BpTriangle *triangle,
                                BpError *err) {
-    static const char *const names[] = {"vertices", "material"};
+    static const char *const names[] = {"vertices", "normals", "material"};
     static const char vertices[] = "three points: \"vertices\": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(node, "vertices", vertices, err));
@@ -129,6 +130,25 @@ static BpStatus parse_list(const BpNode *node, const char *expected, const char 
     return BP_OK;
 }
 
+/* Of the triangles that are listed, which are the scene's first. */
+static BpStatus parse_normals(const BpNode *list, BpScene *scene, BpError *err) {
+    for (size_t i = 0; i < scene->triangle_count; i++) {
+        const BpNode element = bp_node_element(list, i), normals = bp_node_member(&element, "normals");
+        double directions[3][3];
+        if (normals.value == NULL) continue;
+        BP_TRY(parse_points(&normals, 3,
+                            "three directions: \"normals\": [[0, 0, 1], [0, 0.1, 1], [0.1, 0, 1]]",
+                            directions, err));
+        BP_TRY(bp_scene_make_normals(scene, scene->triangle_count, err));
+        for (size_t k = 0; k < 3; k++) {
+            const BpNode normal = bp_node_element(&normals, k);
+            if (!bp_unit_normal(directions[k], scene->normals[i][k]))
+                return bp_node_wrong(&normal, "a direction, other than [0, 0, 0]", err);
+        }
+    }
+    return BP_OK;
+}
+
 BpStatus bp_parse_triangles(const BpNode *root, const BpMaterialIndex *index, BpScene *scene, BpError *err) {
     const BpNode triangles = bp_node_member(root, "triangles"), quads = bp_node_member(root, "quads"),
                  boxes = bp_node_member(root, "boxes");
@@ -138,6 +158,7 @@ BpStatus bp_parse_triangles(const BpNode *root, const BpMaterialIndex *index, Bp
         "a list of triangles: [ { \"vertices\": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], \"material\": ... } ]",
         "an object: { \"vertices\": ..., \"material\": ... }", 1, parse_triangle, index, scene, &listed,
         err));
+    BP_TRY(parse_normals(&triangles, scene, err));
     BP_TRY(parse_list(&quads,
                       "a list of quads: [ { \"corner\": [0, 0, 0], \"u\": [1, 0, 0], \"v\": [0, 1, 0], "
                       "\"material\": ... } ]",

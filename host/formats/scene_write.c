@@ -421,6 +421,12 @@ static BpStatus put_triangles(FILE *out, const BpScene *scene, BpError *err) {
             if (k > 0) fputs(", ", out);
             put_vector(out, triangle->vertices[k]);
         }
+        const float(*const normals)[3] = bp_triangle_normals(scene, i);
+        if (normals != NULL) fputs("], \"normals\": [", out);
+        for (int k = 0; k < 3 && normals != NULL; k++) {
+            if (k > 0) fputs(", ", out);
+            put_vector(out, (double[3]){(double)normals[k][0], (double)normals[k][1], (double)normals[k][2]});
+        }
         fputs("], \"material\": ", out);
         BP_TRY(put_text(out, scene->materials[triangle->material].name, err));
         fputs(" }", out);

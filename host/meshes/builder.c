@@ -35,6 +35,8 @@ void mesh_builder_clear(MeshBuilder *builder) {
     free(builder->placeless);
     free(builder->polygons);
     free(builder->corners);
+    free(builder->normals);
+    free(builder->corner_normals);
     names_clear(&builder->names);
     *builder = (MeshBuilder){0};
 }
@@ -137,6 +139,30 @@ BpStatus mesh_add_corner(MeshBuilder *builder, uint32_t vertex, BpError *err) {
     return BP_OK;
 }
 
+BpStatus mesh_add_normal(MeshBuilder *builder, const double normal[3], bool with_line, BpError *err) {
+    const double length = hypot(hypot(normal[0], normal[1]), normal[2]);
+    const bool has_direction = length > 0 && isfinite(length);
+    if (builder->normal_count == BP_MESH_COUNT_MAX)
+        return input_fail(builder->input, with_line, err, "found more than %u normals, expected fewer",
+                          BP_MESH_COUNT_MAX);
+    BP_TRY(MAKE_ROOM(builder, builder->normals, builder->normal_capacity, builder->normal_count, "normals",
+                     err));
+    for (int a = 0; a < 3; a++)
+        builder->normals[builder->normal_count][a] = has_direction ? (float)(normal[a] / length) : 0;
+    builder->normal_count++;
+    return BP_OK;
+}
+
+BpStatus mesh_choose_normal(MeshBuilder *builder, uint32_t normal, BpError *err) {
+    while (builder->corner_normal_count < builder->corner_count) {
+        BP_TRY(MAKE_ROOM(builder, builder->corner_normals, builder->corner_normal_capacity,
+                         builder->corner_normal_count, "corners", err));
+        builder->corner_normals[builder->corner_normal_count++] = MESH_NO_NORMAL;
+    }
+    builder->corner_normals[builder->corner_count - 1] = normal;
+    return BP_OK;
+}
+
 BpStatus mesh_end_polygon(MeshBuilder *builder, uint32_t material, bool with_line, BpError *err) {
     const uint64_t line = builder->input->line;
     if (builder->polygon_count == BP_MESH_COUNT_MAX)
@@ -178,8 +204,9 @@ BpStatus mesh_find_material(MeshBuilder *builder, const char *name, uint32_t *nu
 typedef struct Finish {
     MeshBuilder *builder;
     PolygonCutter cutter;
-    size_t face_capacity, material_capacity, color_capacity;
-    bool has_materials, has_colors;
+    size_t face_capacity, material_capacity, color_capacity, normal_capacity;
+    bool has_materials, has_colors, has_normals;
+    size_t begin;                    /* of the polygon's corners */
     size_t crossing, first_crossing; /* polygons that cross themselves */
     size_t placeless;                /* polygons that have a vertex without a place */
 } Finish;
@@ -189,6 +216,26 @@ static BpStatus fail_polygon(const Finish *f, size_t number, BpError *err, const
     input->line = f->builder->polygons[number].line;
     return input_fail(input, input->line > 0, err, "face %zu (from %" PRIu32 ") %s",
                       number + f->builder->first_index, f->builder->first_index, text);
+}
+
+/* The normals at the corners of a triangle that was cut from a polygon. */
+static BpStatus add_normals(Finish *f, size_t number, const uint32_t *triangle, BpError *err) {
+    MeshBuilder *const b = f->builder;
+    BpMesh *const mesh = b->mesh;
+    const size_t count = b->polygons[number].corner_count;
+    BP_TRY(MAKE_ROOM(b, mesh->face_normals, f->normal_capacity, mesh->face_count, "faces", err));
+    for (size_t k = 0, at = 0; k < 3; k++) {
+        uint32_t normal = triangle[k];
+        if (b->corner_normals != NULL) {
+            /* Triangles go around a polygon as its corners do, so the next one is near. */
+            while (b->corners[f->begin + at % count] != triangle[k]) at++;
+            const size_t corner = f->begin + at % count;
+            normal = corner < b->corner_normal_count ? b->corner_normals[corner] : MESH_NO_NORMAL;
+        }
+        for (int a = 0; a < 3; a++)
+            mesh->face_normals[mesh->face_count][k][a] = normal < b->normal_count ? b->normals[normal][a] : 0;
+    }
+    return BP_OK;
 }
 
 static BpStatus add_face(Finish *f, size_t number, const uint32_t *triangle, BpError *err) {
@@ -207,6 +254,7 @@ static BpStatus add_face(Finish *f, size_t number, const uint32_t *triangle, BpE
         memcpy(mesh->face_colors[mesh->face_count], b->polygon_colors.values[number],
                sizeof *mesh->face_colors);
     }
+    if (f->has_normals) BP_TRY(add_normals(f, number, triangle, err));
     BP_TRY(MAKE_ROOM(b, mesh->faces, f->face_capacity, mesh->face_count, "faces", err));
     memcpy(mesh->faces[mesh->face_count++], triangle, sizeof *mesh->faces);
     return BP_OK;
@@ -229,6 +277,7 @@ static BpStatus cut(Finish *f, size_t number, const uint32_t *corners, BpError *
     BpMesh *const mesh = f->builder->mesh;
     const size_t count = f->builder->polygons[number].corner_count;
     char text[160];
+    f->begin = (size_t)(corners - f->builder->corners);
     for (size_t i = 0; i < count; i++) {
         if (corners[i] < mesh->vertex_count) continue;
         const uint32_t first = f->builder->first_index;
@@ -305,6 +354,7 @@ BpStatus mesh_finish(MeshBuilder *builder, BpError *err) {
     Finish finish = {.builder = builder, .has_materials = mesh->material_count > 0};
     BP_TRY(finish_colors(builder, &builder->vertex_colors, mesh->vertex_count, "vertex", "vertices", err));
     BP_TRY(finish_colors(builder, &builder->polygon_colors, builder->polygon_count, "face", "faces", err));
+    finish.has_normals = builder->normal_count > 0;
     finish.has_colors = builder->polygon_colors.count > builder->polygon_colors.missing;
     if (builder->vertex_colors.count > builder->vertex_colors.missing) {
         mesh->vertex_colors = builder->vertex_colors.values;

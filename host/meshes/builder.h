@@ -15,6 +15,8 @@
 
 #include <math.h>
 
+#define MESH_NO_NORMAL UINT32_MAX
+
 typedef struct MeshPolygon {
     uint32_t corner_count, material; /* BP_MESH_NO_MATERIAL: none */
     uint32_t line;                   /* 0: it stands in no line */
@@ -40,8 +42,13 @@ typedef struct MeshBuilder {
     size_t polygon_count, polygon_capacity;
     uint32_t *corners; /* of all polygons, one after the other */
     size_t corner_count, corner_capacity,
-        polygon_begin; /* where the corners of the polygon being made begin */
-    BpNames names;     /* of materials: number n is material n - 1 */
+        polygon_begin;   /* where the corners of the polygon being made begin */
+    float (*normals)[3]; /* of vertices, or as many as a file lists */
+    size_t normal_count, normal_capacity;
+    uint32_t *corner_normals; /* of the first corners: into normals, or MESH_NO_NORMAL; those behind have
+                                 none. NULL: each vertex has the normal of its own number */
+    size_t corner_normal_count, corner_normal_capacity;
+    BpNames names; /* of materials: number n is material n - 1 */
     size_t material_capacity;
 } MeshBuilder;
 
@@ -65,6 +72,11 @@ BpStatus mesh_color_vertex(MeshBuilder *builder, const double color[3], bool wit
 BpStatus mesh_color_polygon(MeshBuilder *builder, const double color[3], bool with_line, BpError *err);
 /* Adds a corner to the polygon that is being made: a vertex, counted from 0. */
 BpStatus mesh_add_corner(MeshBuilder *builder, uint32_t vertex, BpError *err);
+/* Adds a normal, of any length; one that has no direction, or is not finite, is missing. */
+BpStatus mesh_add_normal(MeshBuilder *builder, const double normal[3], bool with_line, BpError *err);
+/* The normal of the corner that was added last, counted from 0; it may follow, and if it does not, it is
+ * missing. */
+BpStatus mesh_choose_normal(MeshBuilder *builder, uint32_t normal, BpError *err);
 /* Ends it. */
 BpStatus mesh_end_polygon(MeshBuilder *builder, uint32_t material, bool with_line, BpError *err);
 /* The number of the material of that name, which is added where it is new; "" has BP_MESH_NO_MATERIAL. */

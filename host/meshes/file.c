@@ -161,5 +161,6 @@ void bp_mesh_clear(BpMesh *mesh) {
     free(mesh->face_material);
     free(mesh->vertex_colors);
     free(mesh->face_colors);
+    free(mesh->face_normals);
     *mesh = (BpMesh){0};
 }

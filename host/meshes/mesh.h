@@ -45,10 +45,12 @@ typedef struct BpMesh {
     /* Optional: all vertices, or all faces, have one; grey where the file lacks it. Linear red, green and
      * blue in [0, 1]: bytes of files are decoded as sRGB. */
     float (*vertex_colors)[3], (*face_colors)[3];
-    size_t polygons;           /* faces of the file with more than three corners, which were cut */
-    size_t dropped_degenerate; /* triangles, whole or of polygons, without area or with a corner twice */
-    size_t welded;             /* vertices (of STL) that were equal to an earlier one, and became that one */
-    char notes[480];           /* what was guessed or passed over: "3 lines left out; ..." */
+    float (*face_normals)[3][3]; /* Optional: at the corners of each face, as in the file: not of unit length,
+                                    zeros where one is missing */
+    size_t polygons;             /* faces of the file with more than three corners, which were cut */
+    size_t dropped_degenerate;   /* triangles, whole or of polygons, without area or with a corner twice */
+    size_t welded;   /* vertices (of STL) that were equal to an earlier one, and became that one */
+    char notes[480]; /* what was guessed or passed over: "3 lines left out; ..." */
 } BpMesh;
 
 /* Whether name and contents tell of a mesh, also of one in a format that bp_mesh_read() only refuses by name

@@ -2,7 +2,7 @@
  *
  * Knows: OBJ.   Does not know: what MTL files say (read_mtl.c), how polygons are cut.
  *
- * Normals and texture coordinates are left out, and so are lines and points. Free-form curves and surfaces
+ * Texture coordinates are left out, and so are lines and points. Free-form curves and surfaces
  * are refused, since a mesh without them would lack parts. */
 #include "reader.h"
 
@@ -27,7 +27,7 @@ typedef struct Obj {
     size_t joined_capacity;
     uint32_t material;
     BpNames libraries; /* MTL files that were read */
-    uint64_t normals, textures, lines, points, unknown, unknown_line;
+    uint64_t textures, lines, points, unknown, unknown_line;
     bool has_weights;
 } Obj;
 
@@ -127,25 +127,47 @@ static BpStatus find_vertex(const Obj *obj, int64_t number, uint32_t *vertex, Bp
                       number, count, count);
 }
 
-/* Passes over the numbers of a texture coordinate and a normal: "/2", "//3", "/2/3". NULL: they are none. */
-static const char *pass_others(const char *at) {
+/* One that is not three numbers is missing. */
+static BpStatus read_normal(Obj *obj, char *at, BpError *err) {
+    double normal[3] = {0, 0, 0};
+    for (int a = 0; a < 3; a++) {
+        at = skip_blanks(at);
+        const char *const end = bp_table_number_parse(at, &normal[a]);
+        if (end == NULL) return mesh_add_normal(obj->builder, (const double[3]){0, 0, 0}, true, err);
+        at += end - at;
+    }
+    return mesh_add_normal(obj->builder, normal, true, err);
+}
+
+/* Takes the numbers of a texture coordinate and a normal: "/2", "//3", "/2/3"; *normal stays 0 where there is
+ * none. NULL: they are not numbers. */
+static const char *take_others(const char *at, int64_t *normal) {
     for (int i = 0; i < 2 && *at == '/'; i++) {
-        int64_t ignored = 0;
-        const char *const end = bp_whole_parse(++at, &ignored);
+        int64_t number = 0;
+        const char *const end = bp_whole_parse(++at, &number);
         if (end != NULL) at = end;
+        if (end != NULL && i == 1) *normal = number;
     }
     return is_blank(*at) || is_end(*at) ? at : NULL;
 }
 
+/* The normal of the corner that was added last; one that there is not is missing. */
+static BpStatus choose_normal(const Obj *obj, int64_t number, BpError *err) {
+    const int64_t place = number < 0 ? (int64_t)obj->builder->normal_count + number : number - 1;
+    const bool is_possible = place >= 0 && place < (int64_t)BP_MESH_COUNT_MAX;
+    return mesh_choose_normal(obj->builder, is_possible ? (uint32_t)place : MESH_NO_NORMAL, err);
+}
+
 static BpStatus read_face(Obj *obj, char *at, BpError *err) {
     for (at = skip_blanks(at); !is_end(*at); at = skip_blanks(at)) {
-        int64_t number = 0;
+        int64_t number = 0, normal = 0;
         uint32_t vertex = 0;
         const char *end = bp_whole_parse(at, &number);
-        if (end != NULL) end = pass_others(end);
+        if (end != NULL) end = take_others(end, &normal);
         if (end == NULL) return fail_corner(obj, at, err);
         BP_TRY(find_vertex(obj, number, &vertex, err));
         BP_TRY(mesh_add_corner(obj->builder, vertex, err));
+        if (normal != 0) BP_TRY(choose_normal(obj, normal, err));
         at += end - at;
     }
     return mesh_end_polygon(obj->builder, obj->material, true, err);
@@ -238,9 +260,8 @@ static BpStatus read_statement(Obj *obj, char *line, BpError *err) {
     if (length == 1 && *word == 'v') return read_vertex(obj, rest, err);
     if (length == 1 && *word == 'f') return read_face(obj, rest, err);
     if (length == 2 && memcmp(word, "fo", 2) == 0) return read_face(obj, rest, err); /* f, in older files */
-    if (length == 2 && memcmp(word, "vn", 2) == 0)
-        obj->normals++;
-    else if (length == 2 && memcmp(word, "vt", 2) == 0)
+    if (length == 2 && memcmp(word, "vn", 2) == 0) return read_normal(obj, rest, err);
+    if (length == 2 && memcmp(word, "vt", 2) == 0)
         obj->textures++;
     else if (length == 1 && *word == 'l')
         obj->lines++;
@@ -272,7 +293,6 @@ static BpStatus read_all(Obj *obj, BpError *err) {
     if (obj->builder->polygon_count == 0)
         return input_fail(obj->input, false, err,
                           "found no faces (lines that begin with f), expected a mesh of polygons");
-    note_count(obj, obj->normals, "normal");
     note_count(obj, obj->textures, "texture coordinate");
     note_count(obj, obj->lines, "line");
     note_count(obj, obj->points, "point");

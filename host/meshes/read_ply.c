@@ -19,9 +19,9 @@ typedef struct Ply {
     MeshBuilder *builder;
     Input *input;
     PlyHeader header;
-    size_t face;  /* the element of the faces */
-    PlyList list; /* of their corners */
-    int face_color[3];
+    size_t face;                  /* the element of the faces */
+    PlyList list;                 /* of their corners */
+    int face_color[3], normal[3]; /* places; the first is -1 where there are none */
     double values[PLY_PROPERTIES_MAX];
     bool with_line;
 } Ply;
@@ -85,6 +85,21 @@ static BpStatus find_faces(Ply *ply, BpError *err) {
     return BP_OK;
 }
 
+static void find_normals(Ply *ply) {
+    const PlyElement *const element = &ply->header.elements[ply->header.vertex];
+    int found = 0;
+    for (size_t i = 0; i < element->property_count; i++) {
+        const PlyProperty *const property = ply_property(&ply->header, (int)i);
+        for (int a = 0; a < 3; a++)
+            if (property->count_type == PLY_NONE &&
+                strcmp(property->name, (const char *const[]){"nx", "ny", "nz"}[a]) == 0) {
+                ply->normal[a] = (int)i;
+                found++;
+            }
+    }
+    if (found != 3) ply->normal[0] = -1;
+}
+
 static BpStatus read_vertices(Ply *ply, BpError *err) {
     const PlyHeader *const header = &ply->header;
     double position[3], color[3];
@@ -92,6 +107,10 @@ static BpStatus read_vertices(Ply *ply, BpError *err) {
         BP_TRY(ply_take_row(ply->input, header, header->vertex, row, ply->values, NULL, err));
         for (int a = 0; a < 3; a++) position[a] = ply->values[header->place[a]];
         BP_TRY(mesh_add_vertex(ply->builder, position, ply->with_line, err));
+        if (ply->normal[0] >= 0) {
+            for (int a = 0; a < 3; a++) position[a] = ply->values[ply->normal[a]];
+            BP_TRY(mesh_add_normal(ply->builder, position, ply->with_line, err));
+        }
         if (header->color[0] < 0) continue;
         for (int c = 0; c < 3; c++) color[c] = ply->values[header->color[c]];
         BP_TRY(mesh_color_vertex(ply->builder, color, ply->with_line, err));
@@ -187,6 +206,7 @@ static BpStatus read_all(Ply *ply, BpError *err) {
     BP_TRY(find_corners(ply, err));
     ply->input->line = line;
     find_face_colors(ply);
+    find_normals(ply);
     if (ply->header.color[0] >= 0) ply->builder->vertex_colors.range = ply_color_range(&ply->header);
     for (size_t i = 0; i < ply->header.element_count; i++) {
         if (i == ply->header.vertex)

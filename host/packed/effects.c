@@ -338,6 +338,19 @@ static bool explain_triangle_lamps(const BpScene *scene, bool sent, size_t size,
     return emitting > 0 && sent;
 }
 
+/* Whether a triangle is smooth. */
+static bool explain_smooth_normals(const BpScene *scene, size_t size, char *reason) {
+    size_t smooth = 0;
+    for (size_t i = 0; i < scene->normal_count; ++i) smooth += bp_triangle_normals(scene, i) != NULL;
+    if (smooth == 0)
+        snprintf(reason, size, "no triangle has normals at its vertices");
+    else
+        snprintf(reason, size, "%zu of %zu triangle%s %s normals at %s vertices", smooth,
+                 scene->triangle_count, bp_plural(scene->triangle_count), smooth == 1 ? "has" : "have",
+                 smooth == 1 ? "its" : "their");
+    return smooth > 0;
+}
+
 void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     const size_t size = sizeof effects->reason[0];
     Use uses[BP_EFFECT_COUNT], all;
@@ -378,6 +391,8 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     if (explain_triangle_lamps(scene, bp_effects_has(effects->bits, BP_EFFECT_LAMPS), size,
                                effects->reason[BP_EFFECT_TRIANGLE_LAMPS]))
         effects->bits |= 1u << BP_EFFECT_TRIANGLE_LAMPS;
+    if (explain_smooth_normals(scene, size, effects->reason[BP_EFFECT_SMOOTH_NORMALS]))
+        effects->bits |= 1u << BP_EFFECT_SMOOTH_NORMALS;
     effects->triangles_alone = scene->triangle_count > 0 && scene->sphere_count == 0;
     if (!bp_effects_has(effects->bits, BP_EFFECT_LAMPS))
         snprintf(effects->reason[BP_EFFECT_CAUSTICS], size, "no rays are sent to lamps");

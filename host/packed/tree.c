@@ -220,6 +220,7 @@ BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTre
     const uint32_t width = options->width;
     *tree = (BpTree){.width = width, .single_precision = options->single_precision, .own_slot = NO_SLOT};
     tree->has_motions = options->motions || scene->moving_count > 0;
+    tree->has_normals = scene->normal_count > 0;
     if (width != 2 && width != 4 && width != 8 && width != 16)
         return bp_fail(err, BP_ERR_LIMIT, "a tree is 2, 4, 8 or 16 wide, not %u", width);
     /* A list cannot run out of depth, and neither can a wider tree of up to BP_SPHERES_MAX shapes. */
@@ -245,6 +246,7 @@ void bp_tree_clear(BpTree *tree) {
     free(tree->leaves);
     free(tree->slot_sphere);
     free(tree->triangles);
+    free(tree->triangle_normals);
     free(tree->leaf_motions);
     *tree = (BpTree){0};
 }

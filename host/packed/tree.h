@@ -39,7 +39,9 @@ typedef struct BpTree {
     uint32_t first_triangles;
     uint32_t triangle_leaves; /* leaf_count - first_triangles */
     void *triangles;          /* triangle_leaves * TRIANGLE_REALS(width) reals */
-    bool has_motions;
+    uint32_t normal_leaves;   /* triangle_leaves, or 0 where no triangle is smooth */
+    void *triangle_normals;   /* normal_leaves * TRIANGLE_REALS(width) reals */
+    bool has_motions, has_normals;
     uint32_t motion_leaves; /* first_triangles, or 0 where there are no motions */
     void *leaf_motions;     /* motion_leaves * MOTION_REALS(width) reals */
     uint32_t own_slot;      /* of the sphere at rest whose surface `origin` lies on, or NO_SLOT */

@@ -425,6 +425,23 @@ BpTreeItem bp_tree_triangle_item(const BpScene *scene, uint32_t triangle, const 
     return item;
 }
 
+/* Zeros where a triangle is flat. */
+static void write_normals(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
+                          uint32_t count) {
+    BpTree *tree = writer->tree;
+    const uint32_t width = tree->width;
+    const size_t base = (size_t)(leaf - tree->first_triangles) * TRIANGLE_REALS(width);
+    for (uint32_t lane = 0; lane < width; ++lane) {
+        const float(*const normals)[3] =
+            lane < count ? bp_triangle_normals(writer->scene, items[lane].sphere) : NULL;
+        for (uint32_t k = 0; k < 3; ++k)
+            for (uint32_t a = 0; a < 3; ++a)
+                bp_reals_store(tree->triangle_normals, tree->single_precision,
+                               base + (3 * k + a) * width + lane,
+                               normals != NULL ? (double)normals[k][a] : 0);
+    }
+}
+
 /* Narrowed first, vertices are exact; a lane without a triangle has NaN. Widened by two units in the last
  * place of a plane, so that a box without thickness has some, and by 8 of the longest side, since a hit may
  * lie that far off in single precision. */
@@ -459,6 +476,7 @@ BpBounds bp_tree_write_triangles(const BpTreeWriter *writer, uint32_t leaf, cons
         tree->slot_sphere[(size_t)leaf * width + lane] =
             lane < count ? (uint32_t)writer->scene->sphere_count + items[lane].sphere : NO_SPHERE;
     }
+    if (tree->has_normals) write_normals(writer, leaf, items, count);
     return box;
 }
 
@@ -490,6 +508,10 @@ BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError
     tree->triangle_leaves = leaves - (uint32_t)spheres;
     if (tree->triangle_leaves > 0)
         tree->triangles = bp_own_pages(tree->triangle_leaves * (size_t)TRIANGLE_REALS(width), real_size);
+    if (tree->has_normals) {
+        tree->normal_leaves = tree->triangle_leaves;
+        tree->triangle_normals = bp_own_pages(tree->normal_leaves * (size_t)TRIANGLE_REALS(width), real_size);
+    }
     tree->leaves = bp_own_pages(s * LEAF_REALS(width), real_size);
     tree->slot_sphere = bp_own_pages(l * width, sizeof *tree->slot_sphere);
     if (tree->has_motions) {
@@ -498,7 +520,8 @@ BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError
     }
     if (tree->node_boxes != NULL && tree->children != NULL && tree->leaves != NULL &&
         tree->slot_sphere != NULL && (tree->leaf_motions != NULL || !tree->has_motions) &&
-        (tree->triangles != NULL || tree->triangle_leaves == 0))
+        (tree->triangles != NULL || tree->triangle_leaves == 0) &&
+        (tree->triangle_normals != NULL || tree->normal_leaves == 0))
         return BP_OK;
     return bp_fail(err, BP_ERR_MEMORY, "out of memory for a tree of %u leaves and %u nodes", leaves, nodes);
 }

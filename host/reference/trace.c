@@ -83,6 +83,7 @@ static void set_triangle_hit(const BpScene *scene, const Ray *ray, const BpTrian
     hit->front_face = dot(ray->direction, outward) < 0;
     hit->radial = outward;
     hit->normal = hit->front_face ? outward : scale(-1, outward);
+    hit->normal = bp_ref_shown_normal(scene, hit, unit(ray->direction), hit->normal);
 }
 
 bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit) {
@@ -256,6 +257,7 @@ Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *r
         emitted = add(emitted, scale(0.5, add(hit.normal, (Vec){1, 1, 1})));
     Vec direction, attenuation;
     if (!bp_ref_scatter(scene, ray, &hit, random, &direction, &attenuation)) return mul(left, emitted);
+    direction = bp_ref_folded(&hit, direction);
     const Ray scattered = {hit.point, direction, hit.sphere, ray->time, false, hit.triangle};
     const Vec onward = mul(attenuation, bp_ref_color(scene, &scattered, depth - 1, random, path));
     return mul(left, add(emitted, onward));

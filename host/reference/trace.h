@@ -19,10 +19,10 @@ typedef struct Ray {
 typedef struct Hit {
     double t; /* in lengths of the ray's direction */
     Vec point;
-    Vec radial;                 /* unit length, away from the centre; of a triangle to its outside */
-    Vec normal;                 /* unit length, faces the ray */
-    bool front_face;            /* the ray comes from the side that the outward normal points to */
-    const BpSphere *sphere;     /* or NULL */
+    Vec radial;             /* unit length, away from the centre; of a triangle to its outside */
+    Vec normal;             /* unit length, faces the ray; of a smooth triangle what it shows (smooth.c) */
+    bool front_face;        /* the ray comes from the side that the outward normal points to */
+    const BpSphere *sphere; /* or NULL */
     const BpTriangle *triangle; /* or NULL */
     const BpMaterial *material;
 } Hit;
@@ -48,6 +48,12 @@ Ray bp_ref_camera_ray(const Camera *camera, uint32_t column, uint32_t row, Rando
 
 /* The nearest hit with t > 0; of equal ones spheres before triangles, and what stands first. */
 bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit);
+
+/* The normal that a smooth triangle shows to a ray from `incoming`, a unit direction, at a point of it, where
+ * the one of its plane is `face`, on the ray's side; `face` of others. And where a direction that was
+ * scattered about it goes. */
+Vec bp_ref_shown_normal(const BpScene *scene, const Hit *hit, Vec incoming, Vec face);
+Vec bp_ref_folded(const Hit *hit, Vec direction);
 
 /* The direction a material sends the ray on to, and what it leaves of the light; false: absorbed. */
 bool bp_ref_scatter(const BpScene *scene, const Ray *ray, const Hit *hit, Random *random, Vec *direction,

@@ -53,6 +53,8 @@ BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err) 
 #undef NUMBER
     if (worker->has_triangles) {
         BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &worker->first_triangles, err));
+        if (worker->has_normals)
+            BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &worker->normal_leaves, err));
         BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &worker->coloured_slots, err));
     }
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i)
@@ -139,10 +141,13 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, BpPacked *given, const BpWor
     made->seed_high = (uint32_t)(setup->seed >> 32);
     made->first_leaves = packed->tree.first_leaves;
     made->first_triangles = packed->tree.first_triangles;
+    made->normal_leaves = packed->tree.normal_leaves;
     made->coloured_slots = packed->coloured_slots;
     made->leaf_count = packed->tree.leaf_count;
     made->has_lamps = bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS);
     made->has_triangles = bp_effects_has(setup->program.effects, BP_EFFECT_TRIANGLES);
+    made->has_normals =
+        made->has_triangles && bp_effects_has(setup->program.effects, BP_EFFECT_SMOOTH_NORMALS);
     BpStatus status = BP_OK;
     made->device = setup->device;
     made->owns_device = setup->device == NULL;

@@ -47,8 +47,10 @@ typedef struct BpWorkerSetup {
 enum {
     BP_SCENE_ARRAYS = SCENE_ARRAYS_OF_PACK(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_FOCUSERS(BP_COUNT_ARRAY)
         SCENE_ARRAYS_OF_SLOTS(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_LAMPS(BP_COUNT_ARRAY)
-            SCENE_ARRAYS_OF_TREE(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_TRIANGLES(BP_COUNT_ARRAY),
-    BP_TRIANGLE_ARRAYS = 0 SCENE_ARRAYS_OF_TRIANGLES(BP_COUNT_ARRAY), /* the last */
+            SCENE_ARRAYS_OF_TREE(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_TRIANGLES(BP_COUNT_ARRAY)
+                SCENE_ARRAYS_OF_NORMALS(BP_COUNT_ARRAY),
+    BP_TRIANGLE_ARRAYS = 0 SCENE_ARRAYS_OF_TRIANGLES(BP_COUNT_ARRAY),
+    BP_NORMAL_ARRAYS = 0 SCENE_ARRAYS_OF_NORMALS(BP_COUNT_ARRAY), /* the last, after those */
     BP_SCENE_BUFFERS_MAX = BP_SCENE_ARRAYS * SCENE_PARTS_MAX
 };
 
@@ -66,9 +68,10 @@ typedef struct BpWorker {
     cl_mem lamp_rays; /* of each work-item of a chunk; used only if the scene `has_lamps` */
     bool has_lamps;
     bool has_triangles; /* the kernel knows them, and is given their arrays and numbers */
+    bool has_normals;   /* the same of the normals at their vertices */
     cl_mem pixel_list;  /* NULL: chunks are ranges of pixels */
     size_t real_size;
-    uint32_t SCENE_NUMBERS(BP_SCENE_NUMBER_MEMBER) first_triangles, coloured_slots, pixels;
+    uint32_t SCENE_NUMBERS(BP_SCENE_NUMBER_MEMBER) first_triangles, normal_leaves, coloured_slots, pixels;
     BpKernelForm form;
     uint32_t samples_per_item; /* pixel samples of a work-item, on average in the pool form */
     size_t local_size;

@@ -23,14 +23,23 @@ BpPlacement bp_placement(const double scale[3], const double degrees[3], const d
     return placement;
 }
 
-void bp_place_point(const BpPlacement *placement, double point[3]) {
-    for (int a = 0; a < 3; a++) point[a] *= placement->scale[a];
+static void turn_about_axes(const BpPlacement *placement, double point[3]) {
     for (int axis = 0; axis < 3; axis++) {
         const int a = (axis + 1) % 3, b = (axis + 2) % 3;
         const double x = point[a], y = point[b];
         point[a] = placement->cosine[axis] * x - placement->sine[axis] * y;
         point[b] = placement->sine[axis] * x + placement->cosine[axis] * y;
     }
+}
+
+void bp_place_normal(const BpPlacement *placement, double normal[3]) {
+    for (int a = 0; a < 3; a++) normal[a] /= placement->scale[a];
+    turn_about_axes(placement, normal);
+}
+
+void bp_place_point(const BpPlacement *placement, double point[3]) {
+    for (int a = 0; a < 3; a++) point[a] *= placement->scale[a];
+    turn_about_axes(placement, point);
     for (int a = 0; a < 3; a++) point[a] += placement->translate[a];
 }
 

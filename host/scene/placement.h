@@ -17,6 +17,8 @@ typedef struct BpPlacement {
  */
 BpPlacement bp_placement(const double scale[3], const double degrees[3], const double translate[3]);
 void bp_place_point(const BpPlacement *placement, double point[3]);
+/* The same of a direction across a surface, of any length. */
+void bp_place_normal(const BpPlacement *placement, double normal[3]);
 /* Whether it mirrors, so that what ran clockwise runs counter-clockwise. */
 bool bp_placement_mirrors(const BpPlacement *placement);
 

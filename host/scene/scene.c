@@ -164,6 +164,7 @@ void bp_scene_destroy(BpScene **scene) {
     free(s->images);
     free(s->spheres);
     free(s->triangles);
+    free(s->normals);
     free(s->center_ends);
     free(s->interiors);
     for (size_t i = 0; i < s->medium_count; i++) free(s->media[i].name);
@@ -235,6 +236,17 @@ const char *bp_triangle_name(const BpScene *scene, size_t triangle, char text[BP
     else
         snprintf(text, BP_SPHERE_NAME_SIZE, "boxes[%zu]", (triangle - listed - of_quads) / BP_BOX_TRIANGLES);
     return text;
+}
+
+BpStatus bp_scene_make_normals(BpScene *scene, size_t count, BpError *err) {
+    if (count <= scene->normal_count) return BP_OK;
+    float(*const normals)[3][3] = realloc(scene->normals, count * sizeof *normals);
+    if (normals == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the normals of %zu triangles", count);
+    memset(normals + scene->normal_count, 0, (count - scene->normal_count) * sizeof *normals);
+    scene->normals = normals;
+    scene->normal_count = count;
+    return BP_OK;
 }
 
 size_t bp_scene_emitting_triangles(const BpScene *scene) {

@@ -197,6 +197,9 @@ struct BpScene {
     size_t interior_count;
     BpTriangle *triangles; /* those that are listed, then those of quads, of boxes and of meshes */
     size_t triangle_count, quad_count, box_count;
+    float (*normals)[3][3]; /* of the first normal_count triangles: at the vertices, of unit length, on either
+                               side; all 0: the triangle is flat */
+    size_t normal_count;
     BpShapeFile *mesh_files; /* in the order of their triangles */
     size_t mesh_file_count;
     float (*albedos)[3]; /* linear, in [0,1]; of points and triangles that bring their own colour */
@@ -274,6 +277,17 @@ static inline bool bp_shape_emits(const BpScene *scene, size_t shape) {
     const double *emit = scene->materials[bp_shape_material(scene, shape)].emit;
     return emit[0] > 0 || emit[1] > 0 || emit[2] > 0;
 }
+/* The normals at a triangle's vertices; NULL: it is flat. */
+static inline const float (*bp_triangle_normals(const BpScene *scene, size_t triangle))[3] {
+    if (triangle >= scene->normal_count) return NULL;
+    const float(*const normals)[3] = (const float(*)[3])scene->normals[triangle];
+    for (int k = 0; k < 3; k++)
+        if (normals[k][0] != 0 || normals[k][1] != 0 || normals[k][2] != 0) return normals;
+    return NULL;
+}
+/* Makes room for the normals of `count` triangles in all; those that are new are 0. BP_ERR_MEMORY. */
+BpStatus bp_scene_make_normals(BpScene *scene, size_t count, BpError *err);
+
 /* "sphere", "triangle", or "shape" where there are both. */
 const char *bp_scene_noun(const BpScene *scene);
 

@@ -19,6 +19,9 @@ typedef struct Surface {
     Vec3 incoming; /* unit direction of the path, towards the surface */
     Vec3 normal;   /* unit, on the side that the path comes from */
     vbool enters;  /* the path comes from outside */
+#if SMOOTH_TRIANGLES
+    Vec3 true_normal; /* of the plane of a triangle that shows another; else 0 */
+#endif
     Vec3 albedo;
     vreal fuzz, refraction_index;
 #if LOBES_OF_TWO_DIRECTIONS
@@ -54,7 +57,17 @@ typedef struct Lobe {
 #endif
     vreal fuzz; /* of metal; of what is rough the roughness or alpha; of a medium the anisotropy; at the camera the sine of the angle from the axis to a pixel's corner */
     vuint kind; /* LOBE_... */
+#if SMOOTH_TRIANGLES
+    Vec3 true_normal; /* of the surface */
+#endif
 } Lobe;
+
+/* Of the surface, where `axis` is its normal; `lobe_of`: a lobe and what leads to its members. */
+#if SMOOTH_TRIANGLES
+#define TRUE_NORMAL(lobe_of) choose3(is_smooth(lobe_of true_normal), lobe_of true_normal, lobe_of axis)
+#else
+#define TRUE_NORMAL(lobe_of) lobe_of axis
+#endif
 
 /* Lobes that scene_types.h does not name. LOBE_NONE has no density: it scatters into a few directions only. LOBE_PIXEL is
  * that of a camera ray, which light_camera (caustics.cl) gives it; rays to lamps do not light the camera. */
@@ -74,6 +87,11 @@ enum {
 
 #define LOBE_FUZZ_MIN R(0x1p-6) /* with less fuzz, rays to lamps gain nothing, and float does not hold the densities well */
 #define PI_INVERSE R(0.3183098861837907)
+#endif
+
+#if SMOOTH_TRIANGLES
+/* Whether there is a true normal besides the one that the surface shows. */
+static vbool is_smooth(Vec3 true_normal) { return dot3(true_normal, true_normal) > splat(R(0.5)); }
 #endif
 
 typedef struct BsdfSample {
@@ -112,6 +130,9 @@ static BsdfSample bsdf_sample_reflected(const Surface *surface, Vec3 direction) 
 #endif
     sample.lobe.fuzz = splat(1);
     sample.lobe.kind = splat_uint(LOBE_NONE);
+#if SMOOTH_TRIANGLES
+    sample.lobe.true_normal = surface->true_normal;
+#endif
 #endif
     return sample;
 }

@@ -93,7 +93,7 @@ static Vec3 rough_dielectric_weight(const Lobe *lobe, Vec3 direction) {
 
 /* Whether a ray to a lamp leaves the vertex of a path into its sphere: as the path does where both directions are on one side. */
 static vbool turned_inward(const Lobe *lobe, Vec3 of_path, Vec3 direction, vbool inward) {
-    const vbool a = dot3(of_path, lobe->axis) < splat(0), b = dot3(direction, lobe->axis) < splat(0);
+    const vbool a = dot3(of_path, TRUE_NORMAL(lobe->)) < splat(0), b = dot3(direction, TRUE_NORMAL(lobe->)) < splat(0);
     const vbool turned = is_rough_dielectric(lobe) & ((a & vbool_not(b)) | (vbool_not(a) & b));
     return (inward & vbool_not(turned)) | (vbool_not(inward) & turned);
 }

@@ -34,6 +34,9 @@ static Lobe choose_lobe(vbool mask, const Lobe *a, const Lobe *b) {
 #endif
     chosen.fuzz = choose(mask, a->fuzz, b->fuzz);
     chosen.kind = choose_uint(mask, a->kind, b->kind);
+#if SMOOTH_TRIANGLES
+    chosen.true_normal = choose3(mask, a->true_normal, b->true_normal);
+#endif
     return chosen;
 }
 #endif

@@ -3,9 +3,16 @@
  * Knows: scene_types.h, parts.cl.   Does not know: rays, materials. */
 
 /* What a kernel that knows triangles is given of them, each followed by a comma. */
-#if EFFECT_TRIANGLES
+#if SMOOTH_TRIANGLES
+#define TRIANGLES_PARAMETERS                                                                                           \
+    SCENE_ARRAYS_OF_TRIANGLES(SPLIT_PARAMETER) SCENE_ARRAYS_OF_NORMALS(SPLIT_PARAMETER) uint first_triangles, uint normal_leaves,
+#define TRIANGLES_ARGUMENTS                                                                                            \
+    SCENE_ARRAYS_OF_TRIANGLES(SPLIT_ARGUMENT) SCENE_ARRAYS_OF_NORMALS(SPLIT_ARGUMENT) first_triangles, normal_leaves,
+#elif EFFECT_TRIANGLES
 #define TRIANGLES_PARAMETERS SCENE_ARRAYS_OF_TRIANGLES(SPLIT_PARAMETER) uint first_triangles,
 #define TRIANGLES_ARGUMENTS SCENE_ARRAYS_OF_TRIANGLES(SPLIT_ARGUMENT) first_triangles,
+#endif
+#if EFFECT_TRIANGLES
 #define WITH_SHEAR(shear) shear,
 #else
 #define TRIANGLES_PARAMETERS
@@ -21,6 +28,10 @@ typedef struct Geometry {
     SCENE_ARRAYS_OF_TRIANGLES(SPLIT_MEMBER)
     uint first_triangles; /* the leaves from here on hold triangles */
 #endif
+#if SMOOTH_TRIANGLES
+    SCENE_ARRAYS_OF_NORMALS(SPLIT_MEMBER)
+    uint normal_leaves; /* 0: no triangle is smooth */
+#endif
 #ifdef FLAT_GROUPS_MAX
     FlatTree flat;
 #endif
@@ -33,6 +44,10 @@ static void geometry_init(SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) TRIANGLES_PARAME
 #if EFFECT_TRIANGLES
     SCENE_ARRAYS_OF_TRIANGLES(SET_ARRAY)
     geometry->first_triangles = first_triangles;
+#endif
+#if SMOOTH_TRIANGLES
+    SCENE_ARRAYS_OF_NORMALS(SET_ARRAY)
+    geometry->normal_leaves = normal_leaves;
 #endif
 #undef SET_ARRAY
     geometry->first_leaves = first_leaves;

@@ -15,6 +15,7 @@
 #define intersect_own_sphere LANED(intersect_own_sphere)
 #define is_triangle LANED(is_triangle)
 #define load_triangle LANED(load_triangle)
+#define load_normals LANED(load_normals)
 #define load_triangle_if LANED(load_triangle_if)
 #define shear_at_triangles LANED(shear_at_triangles)
 #define intersect_triangle LANED(intersect_triangle)
@@ -116,6 +117,21 @@ static Triangle load_triangle(const Geometry *geometry, vuint slot) {
     return triangle;
 }
 
+#if SMOOTH_TRIANGLES
+/* The normals at its vertices, in a scene where a triangle is smooth. */
+static Triangle load_normals(const Geometry *geometry, vuint slot) {
+    const vuint lane = slot % TREE_WIDTH, leaf = slot / TREE_WIDTH - geometry->first_triangles;
+    const vuint place = leaf * (9u * TREE_WIDTH) + lane;
+    vreal of[9];
+    for (uint i = 0; i < 9u; ++i) of[i] = gather_split_real(geometry->triangle_normals, i * TREE_WIDTH, place);
+    Triangle normals;
+    normals.a = vec3(of[0], of[1], of[2]);
+    normals.b = vec3(of[3], of[4], of[5]);
+    normals.c = vec3(of[6], of[7], of[8]);
+    return normals;
+}
+#endif
+
 /* The triangle in a slot, in the lanes `wanted`; in others the first. */
 static Triangle load_triangle_if(const Geometry *geometry, vbool wanted, vuint slot) {
     return load_triangle(geometry, choose_uint(wanted, slot, splat_uint(geometry->first_triangles * TREE_WIDTH)));
@@ -179,15 +195,15 @@ FORCE_INLINE static void intersect_triangle(const Geometry *geometry, const Ray 
 #endif
 }
 
-/* The point that was met, where it is a triangle's, and the outward unit normal there. */
-static void surface_of_triangle(const Geometry *geometry, const Ray *ray, const Hit *hit, vbool met, Point *point,
-                                Vec3 *normal) {
+/* The point that was met, where it is a triangle's, and the outward unit normal of its plane. */
+static void surface_of_triangle(const Geometry *geometry, const Ray *ray, const Hit *hit, vbool met, WITH_SHARES(Shares *shares)
+                                Point *point, Vec3 *normal) {
     const vbool wanted = met & is_triangle(geometry, hit->slot);
     if (!any_lane(wanted)) return;
     const Triangle triangle = load_triangle_if(geometry, wanted, hit->slot);
     Point place;
     Vec3 outward;
-    triangle_surface(ray, &triangle, &place, &outward);
+    triangle_surface(ray, &triangle, WITH_SHARES(shares) &place, &outward);
     point->high = choose3(wanted, place.high, point->high);
     point->low = choose3(wanted, place.low, point->low);
     point->error = choose(wanted, place.error, point->error);

@@ -65,6 +65,13 @@ typedef REFINED refined;
 #else
 #define WITH_SPHERE(sphere)
 #endif
+/* Triangles may have normals at their vertices. Where a ray meets one is then known by its shares of two vertices. */
+#define SMOOTH_TRIANGLES (EFFECT_TRIANGLES && EFFECT_SMOOTH_NORMALS)
+#if SMOOTH_TRIANGLES
+#define WITH_SHARES(shares) shares,
+#else
+#define WITH_SHARES(shares)
+#endif
 /* Lamps are sampled where the scene has any, at surfaces that scatter into many directions and in media. They are
  * spheres and triangles, in a tree, discs in the sky, and an image around the scene. */
 #define IS_LIT (EFFECT_LAMBERTIAN || EFFECT_METAL || EFFECT_MEDIA || EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL || \

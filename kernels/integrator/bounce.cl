@@ -21,7 +21,7 @@ static void trace_bounce(const Scene *scene, Path *path) {
     vertex_init(scene, &ray, &hit, met, &vertex);
     see_surface(scene, &hit, met, &vertex, path);
     surface_set_odds(path, &vertex.surface);
-    const BsdfSample bsdf_sample = scatter(&vertex.surface, path->key, first_dimension(path->depth - 1u));
+    const BsdfSample bsdf_sample = scatter_folded(&vertex.surface, path->key, first_dimension(path->depth - 1u));
     path_keep_odds(path, met, &vertex.surface, &bsdf_sample);
     follow_chain(scene, path, met, &hit, &bsdf_sample);
     path_scatter(path, met, &vertex.point, hit.slot, hit.enters, &bsdf_sample);

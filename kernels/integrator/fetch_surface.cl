@@ -25,6 +25,9 @@ static void fetch_surface(const Scene *scene, const Ray *ray, const Hit *hit, WI
                            gather_split_real(scene->slot_albedo, 2u, colour));
     surface->kind = gather_uint(scene->material_kinds, kinds);
     *emitted = zero3();
+#if SMOOTH_TRIANGLES
+    surface->true_normal = zero3();
+#endif
 #if EFFECT_EMISSION
     *emitted = vec3(gather_real(scene->materials, numbers), gather_real(scene->materials + 1u, numbers),
                     gather_real(scene->materials + 2u, numbers));

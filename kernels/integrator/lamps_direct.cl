@@ -6,7 +6,7 @@
  * densities, and so does what a ray to a lamp brings, with the lobe's own weight in its direction.
  *
  * In:    paths that wait to be lit, or a lamp that a path has hit.   Out: paths with that light, or the weight of the hit.
- * Knows: lamps.cl, triangle_lamps.cl, discs.cl, scatter.cl, vary_surface.cl, flight.cl, the closest hit.   Does not know: how a path continues.
+ * Knows: lamps.cl, triangle_lamps.cl, discs.cl, fold.cl, vary_surface.cl, flight.cl, the closest hit.   Does not know: how a path continues.
  *
  * A ray to a lamp passes the boundaries of media as a path does: each begins another of its segments, of which it has no more
  * than the path. So both ways still have the same lengths. */
@@ -16,7 +16,7 @@
 /* The density of `direction` in the lobe over that with which it is drawn as one to the lamp. */
 static vreal density_ratio(const Lobe *lobe, Vec3 direction, int drawn, vreal cap, vreal probability) {
     const vreal solid_angle = divide(splat(2), splat(PI_INVERSE)) * cap;
-    return at_most(divide(scatter_pdf(lobe, direction, drawn) * solid_angle, probability), splat(RATIO_MAX));
+    return at_most(divide(folded_pdf(lobe, direction, drawn) * solid_angle, probability), splat(RATIO_MAX));
 }
 
 /* The weight of the radiance of a lamp that a path has hit, where rays are sent to it too. */
@@ -31,7 +31,7 @@ static vreal weight_of_hit(vbool shared, vreal ratio) {
 static Vec3 throughput_along(const Path *path, Vec3 direction) {
     const vbool weighted = is_weighted(&path->lobe);
     if (!any_lane(weighted)) return path->throughput;
-    return choose3(weighted, multiply3(path->arrived, scatter_weight(&path->lobe, direction)), path->throughput);
+    return choose3(weighted, multiply3(path->arrived, folded_weight(&path->lobe, direction)), path->throughput);
 }
 #else
 #define throughput_along(path, direction) (path)->throughput
@@ -133,7 +133,7 @@ static LampWay pass_boundaries(const Scene *scene, const Path *path, vbool activ
     way.medium = path->medium; /* a surface that reflects lies in the medium that the path has come through */
     way.left = vec3(splat(1), splat(1), splat(1));
 #if EFFECT_ROUGH_DIELECTRIC
-    const vbool through = active & is_rough_dielectric(&path->lobe) & (dot3(ray->direction, path->lobe.axis) < splat(0));
+    const vbool through = active & is_rough_dielectric(&path->lobe) & (dot3(ray->direction, TRUE_NORMAL(path->lobe.)) < splat(0));
     if (any_lane(through)) way.medium = choose_uint(through, medium_around(scene, ray, through), way.medium);
 #endif
     if (scene->boundaries[0] == NO_SLOT) return way;
@@ -191,7 +191,10 @@ static Vec3 radiance_along(const Scene *scene, const Ray *ray, const Sphere *sph
 #if SAMPLES_TRIANGLES
     Hit hit;
     hit.slot = slot;
-    surface_of_triangle(&scene->geometry, ray, &hit, visible, &point, &outward);
+#if SMOOTH_TRIANGLES
+    Shares shares;
+#endif
+    surface_of_triangle(&scene->geometry, ray, &hit, visible, WITH_SHARES(&shares) &point, &outward);
 #endif
     return vary_radiance(scene, slot, &point, outward, visible, radiance_of_sphere(scene, slot));
 }

@@ -1,7 +1,7 @@
 /* vertex.cl: the point where a ray meets a surface, with the surface as it is there.
  *
  * In:    rays and their hits.   Out: point, normal, material with its textures, and what it emits.
- * Knows: the shapes by one function each, fetch_surface.cl, vary_surface.cl.   Does not know: paths. */
+ * Knows: the shapes by one function each, fetch_surface.cl, smooth_surface.cl, vary_surface.cl.   Does not know: paths. */
 typedef struct Vertex {
 #if SPHERES_MET
     Sphere sphere; /* of no meaning where a triangle was met */
@@ -17,11 +17,17 @@ static void vertex_init(const Scene *scene, const Ray *ray, const Hit *hit, vboo
 #if SPHERES_MET
     sphere_surface(ray, &vertex->sphere, hit->slot, hit->t, hit->enters, &vertex->point, &vertex->outward);
 #endif
+#if SMOOTH_TRIANGLES
+    Shares shares;
+#endif
 #if EFFECT_TRIANGLES
-    surface_of_triangle(&scene->geometry, ray, hit, met, &vertex->point, &vertex->outward);
+    surface_of_triangle(&scene->geometry, ray, hit, met, WITH_SHARES(&shares) &vertex->point, &vertex->outward);
 #endif
     surface->incoming = ray->direction;
     surface->enters = hit->enters;
     surface->normal = choose3(hit->enters, vertex->outward, scale3(splat(-1), vertex->outward));
+#if SMOOTH_TRIANGLES
+    smooth_surface(scene, hit, met, &shares, surface);
+#endif
     vary_surface(scene, met, hit->slot, &vertex->point, vertex->outward, surface, &vertex->emitted);
 }

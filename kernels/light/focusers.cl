@@ -126,9 +126,9 @@ static vreal pixel_pdf(__global const PackedCamera *camera, const Lobe *lobe, Ve
     return choose(inside, density, splat(0));
 }
 
-/* As scatter_pdf, at the camera too. */
+/* As folded_pdf, at the camera too. */
 static vreal vertex_pdf(const Scene *scene, const Lobe *lobe, Vec3 direction, int drawn) {
-    vreal density = scatter_pdf(lobe, direction, drawn);
+    vreal density = folded_pdf(lobe, direction, drawn);
     const vbool pixel = vbool_of_uint(lobe->kind == splat_uint(LOBE_PIXEL));
     if (any_lane(pixel)) density = choose(pixel, pixel_pdf(scene->camera, lobe, direction, drawn), density);
     return density;

@@ -65,6 +65,9 @@ static Lobe phase_lobe(Vec3 before, vreal g) {
 #endif
     lobe.fuzz = g;
     lobe.kind = splat_uint(LOBE_PHASE);
+#if SMOOTH_TRIANGLES
+    lobe.true_normal = zero3();
+#endif
     return lobe;
 }
 #endif

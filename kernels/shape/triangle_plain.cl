@@ -22,12 +22,20 @@
 #define triangle_is_candidate LANED(triangle_is_candidate)
 #define triangle_decide LANED(triangle_decide)
 #define triangle_surface LANED(triangle_surface)
+#define Shares LANED(Shares)
+#define triangle_shares LANED(triangle_shares)
 #define TriangleView LANED(TriangleView)
 #define triangle_view LANED(triangle_view)
 
 typedef struct Triangle {
     Vec3 a, b, c;
 } Triangle;
+
+#if SMOOTH_TRIANGLES
+typedef struct Shares {
+    vreal b, c;
+} Shares;
+#endif
 
 /* The members of triangle_robust.cl, of which two mean something. */
 typedef struct Shear {
@@ -84,10 +92,27 @@ FORCE_INLINE static vbool triangle_decide(const Shear *shear, const Triangle *tr
     return met;
 }
 
-FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triangle, Point *point, Vec3 *normal) {
+#if SMOOTH_TRIANGLES
+/* By the areas between a point of the triangle and its sides. */
+static Shares triangle_shares(const Triangle *triangle, Vec3 point) {
+    const Vec3 to_b = subtract3(triangle->b, triangle->a), to_c = subtract3(triangle->c, triangle->a);
+    const Vec3 way = subtract3(point, triangle->a), normal = cross3(to_b, to_c);
+    const vreal area2 = dot3(normal, normal), all = choose(area2 > splat(0), area2, splat(1));
+    Shares shares;
+    shares.b = at_most(at_least(divide(dot3(cross3(way, to_c), normal), all), splat(0)), splat(1));
+    shares.c = at_most(at_least(divide(dot3(cross3(to_b, way), normal), all), splat(0)), splat(1) - shares.b);
+    return shares;
+}
+#endif
+
+FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triangle, WITH_SHARES(Shares *shares) Point *point,
+                                          Vec3 *normal) {
     vreal t;
     vbool enters;
     triangle_meets(ray->origin.high, ray->direction, triangle, &t, &enters);
+#if SMOOTH_TRIANGLES
+    *shares = triangle_shares(triangle, madd3(t, ray->direction, ray->origin.high));
+#endif
     point->high = madd3(t, ray->direction, ray->origin.high);
     point->low = zero3();
     point->error = splat(0);

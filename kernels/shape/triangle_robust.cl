@@ -8,7 +8,8 @@
  *                               vertices run counter-clockwise) or inside? Or is that for the next to decide?
  *        triangle_intersect     the same, for every triangle
  *        triangle_beside_sphere the same, for a ray that leaves a sphere
- *        triangle_surface       the point that was met, as an origin for the next ray, and the outward unit normal
+ *        triangle_surface       the point that was met, as an origin for the next ray, and the outward unit normal; for
+ *                               triangles with normals at their vertices the point's shares of these
  *        triangle_view          what a point sees of it, for rays to a triangle that emits
  * Knows: ray.cl, wide.cl.   Does not know: trees, materials. Read once for each number of lanes.
  *
@@ -32,6 +33,7 @@
 #define OWN_SHAPE_IS_MET 0
 #define ROBUST_SHAPES 1
 #define Triangle LANED(Triangle)
+#define Shares LANED(Shares)
 #define Shear LANED(Shear)
 #define Edges LANED(Edges)
 #define turn3 LANED(turn3)
@@ -63,6 +65,13 @@
 typedef struct Triangle {
     Vec3 a, b, c;
 } Triangle;
+
+#if SMOOTH_TRIANGLES
+/* Of a point of a triangle: at least 0, at most 1 together; vertex a has the rest. */
+typedef struct Shares {
+    vreal b, c;
+} Shares;
+#endif
 
 /* `along`: of an axis, one third of all rays each; of equal components the later. */
 typedef struct Shear {
@@ -340,7 +349,8 @@ static vbool triangle_beside_sphere(const Ray *ray, const Shear *shear, const Tr
 #endif
 
 /* From the triangle's vertices, not along the ray: off the plane only by rounding, whatever the ray's length. */
-FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triangle, Point *point, Vec3 *normal) {
+FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triangle, WITH_SHARES(Shares *shares) Point *point,
+                                          Vec3 *normal) {
     const Shear shear = shear_of(ray);
     const Triangle turned = turn_triangle(&shear, triangle);
     const Edges edges = edges_of(&shear, &turned);
@@ -361,6 +371,10 @@ FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triang
     const vreal size = fabs(point->high.x) + fabs(point->high.y) + fabs(point->high.z);
     point->error = fma(one_norm(to_b) + one_norm(to_c), splat(WIDE_POINT_ERROR), size * R(0x1p-45));
     *normal = wide_unit(wide_cross(to_b, to_c));
+#if SMOOTH_TRIANGLES
+    shares->b = wide_near(of_b);
+    shares->c = wide_near(of_c);
+#endif
 }
 
 #if EFFECT_TRIANGLE_LAMPS

@@ -40,6 +40,8 @@ class Mesh:
     colors: linear shares of light (r, g, b), (F, 3) of faces or (N, 3) of vertices, of which each face gets the mean; uint8 arrays and
         "#rrggbb" are sRGB; numbers (F,) or (N,) go through the colour map `cmap`, as in Spheres. As many of vertices as of faces: they
         are those of faces. None: the material's own.
+    normals: (N, 3), a direction for each vertex, of any length, zeros where one is missing: the mesh looks curved. smooth: it does so
+        without them, too, by those of its faces.
     material: a name from the scene's "materials", or a material itself. Those that let light in ask for faces that are closed.
         None: matte.
     up, view, name: as in Spheres.
@@ -54,6 +56,19 @@ class Mesh:
     up: str = "y"
     view: typing.Union[str, typing.Sequence[float]] = "three-quarter"
     name: str = "mesh"
+    normals: typing.Optional[npt.ArrayLike] = None
+    smooth: bool = False
+
+    def _normals(self, count: int) -> typing.Optional[Array]:
+        if self.normals is None:
+            return None
+        normals = floats(self.normals, "normals")
+        if normals.shape != (count, 3):
+            raise lib.SceneError(f"normals: found an array of shape {normals.shape}, expected ({count}, 3), one for each vertex")
+        bad = np.flatnonzero(~np.isfinite(normals).all(axis=1))
+        if len(bad) > 0:
+            raise lib.SceneError(f"normals: found no finite number for vertex {bad[0]} (from 0), expected three")
+        return normals
 
     def _places(self) -> Array:
         places = floats(self.vertices, "vertices")
@@ -99,12 +114,13 @@ class Mesh:
         """For the library; `keep` gets what must live until it has read the arrays."""
         places = self._places()
         corners = self._corners(len(places))
-        colors = self._colors(corners, len(places))
+        colors, normals = self._colors(corners, len(places)), self._normals(len(places))
         if corners.shape[1] == 4:
             colors = np.repeat(colors, 2, axis=0) if colors is not None and colors.ndim == 2 else colors
             corners = corners[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
         triangles = np.ascontiguousarray(corners, np.uint32)
-        keep += [places, triangles, colors]
+        keep += [places, triangles, colors, normals]
         return lib.BpMeshSet(len(places), len(triangles), rows(places, True), c.c_void_p(triangles.ctypes.data),
                              rows(colors, colors is not None and colors.ndim == 2),
-                             None if material is None else c_text("material", material), c_text("name", self.name))
+                             None if material is None else c_text("material", material), c_text("name", self.name),
+                             rows(normals, True), int(self.smooth))

@@ -301,8 +301,8 @@ def _is_array(subject: typing.Any) -> bool:
 
 
 def make_scene(subject: typing.Optional[Subject] = None, *, vertices: typing.Optional[npt.ArrayLike] = None,
-               faces: typing.Optional[npt.ArrayLike] = None, colors: typing.Optional[Color] = None,
-               radius: typing.Optional[npt.ArrayLike] = None,
+               faces: typing.Optional[npt.ArrayLike] = None, normals: typing.Optional[npt.ArrayLike] = None,
+               colors: typing.Optional[Color] = None, radius: typing.Optional[npt.ArrayLike] = None,
                color: typing.Optional[Color] = None, material: typing.Union[None, str, Document] = None,
                cmap: typing.Optional[str] = None, color_range: typing.Optional[typing.Tuple[float, float]] = None,
                up: typing.Optional[str] = None, camera: typing.Optional[Document] = None,
@@ -310,7 +310,7 @@ def make_scene(subject: typing.Optional[Subject] = None, *, vertices: typing.Opt
                materials: typing.Optional[Document] = None, background: typing.Any = None,
                lighting: typing.Optional[str] = None, backdrop: typing.Any = None) -> Scene:
     """The scene that render() would render of the same arguments; its camera can be used for other pictures."""
-    subject = _with_mesh(subject, {"vertices": vertices, "faces": faces, "colors": colors})
+    subject = _with_mesh(subject, {"vertices": vertices, "faces": faces, "normals": normals, "colors": colors})
     looks: typing.Dict[str, typing.Any] = {"radius": radius, "color": color, "material": material, "cmap": cmap,
                                            "color_range": color_range,
                                            "up": up}
@@ -362,8 +362,8 @@ def _refuse_unknown(options: typing.Dict[str, typing.Any]) -> None:
 
 
 def render(subject: typing.Optional[Subject] = None, *, vertices: typing.Optional[npt.ArrayLike] = None,
-           faces: typing.Optional[npt.ArrayLike] = None, colors: typing.Optional[Color] = None,
-           radius: typing.Optional[npt.ArrayLike] = None, color: typing.Optional[Color] = None,
+           faces: typing.Optional[npt.ArrayLike] = None, normals: typing.Optional[npt.ArrayLike] = None,
+           colors: typing.Optional[Color] = None, radius: typing.Optional[npt.ArrayLike] = None, color: typing.Optional[Color] = None,
            material: typing.Union[None, str, Document] = None, cmap: typing.Optional[str] = None,
            color_range: typing.Optional[typing.Tuple[float, float]] = None, up: typing.Optional[str] = None,
            camera: typing.Optional[Document] = None, width: typing.Optional[int] = None,
@@ -374,7 +374,7 @@ def render(subject: typing.Optional[Subject] = None, *, vertices: typing.Optiona
     """Renders a picture.
 
     subject: positions (N, 3); Spheres, Meshes, or a list of them; a scene as a dict, a Scene, or the path of a scene, of a
-    file of particles or of a mesh. Or in its place vertices, faces and colors of a mesh, as in Mesh.
+    file of particles or of a mesh. Or in its place vertices, faces, normals and colors of a mesh, as in Mesh.
     For positions and Spheres: radius, color, material, cmap, color_range and up as in Spheres; camera: members of the
     scene's "camera" (without lookfrom, lookat or focus_dist it is fitted to the spheres); width, height: of the picture;
     materials, background, lighting, backdrop: as in a scene. Without background and lighting, the light is "soft" on white, and for
@@ -390,7 +390,7 @@ def render(subject: typing.Optional[Subject] = None, *, vertices: typing.Optiona
         raise wrong_type("progress", progress, "True or a function")
     report = _bar if progress is True else progress if callable(progress) else None
     try:
-        scene = make_scene(subject, vertices=vertices, faces=faces, colors=colors, radius=radius, color=color, material=material, cmap=cmap, color_range=color_range,
+        scene = make_scene(subject, vertices=vertices, faces=faces, normals=normals, colors=colors, radius=radius, color=color, material=material, cmap=cmap, color_range=color_range,
                            up=up, camera=camera, width=width, height=height, materials=materials, background=background,
                            lighting=lighting, backdrop=backdrop)
         running = Render(scene, **options)

@@ -71,6 +71,8 @@ static void print_whole(const BpMesh *mesh) {
         print_colors("vertex_colors", (const float(*)[3])mesh->vertex_colors, mesh->vertex_count);
     if (mesh->face_colors != NULL)
         print_colors("face_colors", (const float(*)[3])mesh->face_colors, mesh->face_count);
+    if (mesh->face_normals != NULL)
+        print_colors("corner_normals", (const float(*)[3])mesh->face_normals, 3 * mesh->face_count);
 }
 
 static void print_materials(const BpMesh *mesh) {

@@ -242,11 +242,38 @@ class Obj(MeshTest):
             {"name": "lamp light", "faces": 2, "kd": [0, 0, 0], "ke": [4, 4, 3], "d": 0.75}])
         self.assertEqual(found["face_material"], [0, 0, 0, 0, 1, 1])
         self.assertEqual([tuple(f) for f in found["faces"]], TRIANGLES[:4] + [(0, 4, 5), (0, 5, 1)])
-        for note in ("textures left out", "1 normal left out", "1 texture coordinate left out", "1 line left out", "1 point left out"):
+        for note in ("textures left out", "1 texture coordinate left out", "1 line left out", "1 point left out"):
             self.assertIn(note, found["notes"])
         found = self.of("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl a\nf 1 2 3\nusemtl b\nusemtl\nf 1 2 3\n")
         self.assertEqual(found["face_material"], [-1, 0, -1])
         self.assertEqual(found["materials"], [{"name": "a", "faces": 1}, {"name": "b", "faces": 0}])
+
+    def test_obj_normals(self):
+        """Of corners: with and without texture coordinates, from the end, defined later, of polygons; 0 where one is missing or has no direction."""
+        square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+        x, y, z, none = [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]
+        for corners, expected in (("1//1 2//2 3//3", [x, y, z]), ("1/1/1 2/1/2 3/7/3", [x, y, z]), ("1//-3 2//-2 3//-1", [x, y, z]), ("1//1 2 3//3", [x, none, z]),
+                                  ("1/1 2/1 3//2", [none, none, y]), ("1//4 2//4 3//1", [none, none, x])):
+            last = "vn 0 0 0\n" if "//4" in corners else ""
+            found = self.of("a.obj", f"{square}vn 3 0 0\nvn 0 1e-3 0\nvn 0 0 1\n{last}vt 0 0\nf {corners}\n")
+            self.near(found["corner_normals"], expected)
+        found = self.of("a.obj", square + "f 1//1 2//2 3//3 4//1\nvn 1 0 0\nvn 0 1 0\nvn 0 0 1\n")
+        by_vertex = {0: x, 1: y, 2: z, 3: x}
+        self.near(found["corner_normals"], [by_vertex[v] for face in found["faces"] for v in face])
+        self.assertNotIn("corner_normals", self.of("a.obj", square + "f 1 2 3\n"))
+        for corners in ("1//2 2//1 3//1", "1//-2 2//1 3//1", "1 2//1 3//1"):
+            self.near(self.of("a.obj", square + f"vn 0 0 1\nf {corners}\n")["corner_normals"], [none, z, z])
+        self.near(self.of("a.obj", square + "vn 0 0\nvn x\nvn 0 0 nan\nvn 0 1 0 9\nf 1//1 2//2 3//3\nf 1//4 2//4 3//1\n")["corner_normals"], [none] * 3 + [y, y, none])
+        self.assertNotIn("corner_normals", self.of("a.obj", square + "f 1//1 2//2 3//3\n"))
+
+    def test_ply_normals(self):
+        """nx, ny and nz of vertices, in any order; all three or none."""
+        def ply(names, *rows):
+            return ("ply\nformat ascii 1.0\nelement vertex 3\n" + "".join(f"property float {name}\n" for name in names) +
+                    "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + "\n".join(rows) + "\n3 0 1 2\n")
+        found = self.of("a.ply", ply(["nz", "x", "y", "z", "nx", "ny"], "5 0 0 0 0 0", "0 1 0 0 -2 0", "nan 0 1 0 0 1"))
+        self.near(found["corner_normals"], [[0, 0, 1], [-1, 0, 0], [0, 0, 0]])
+        self.assertNotIn("corner_normals", self.of("a.ply", ply(["x", "y", "z", "nx", "nz"], "0 0 0 1 1", "1 0 0 1 1", "0 1 0 1 1")))
 
     def test_libraries(self):
         """Found by names with blanks, of several, in folders of other machines; a missing one is a note."""

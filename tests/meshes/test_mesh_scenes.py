@@ -107,6 +107,57 @@ class Meshes(ProgramTest):
 
         self.assertLess(apart(mirrored, cube), apart(bubble, cube) / 4)
 
+    def test_smooth(self):
+        """Normals of a file, or by the faces' angles: those that this file places and computes, also where the mesh is mirrored."""
+        points = [[0.1, 0.2, -0.3], [1.3, 0.1, 0.2], [0.3, 0.9, 0.4], [0.2, 0.3, 1.7]]
+        faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+        own = [[-1, -1, -1], [3, 0, 0.5], [0.1, 1, 0], [0, 0.2, 2]]
+        self.write("p.off", off(points, faces))
+        self.write("n.obj", "".join(f"v {x} {y} {z}\nvn {u} {v} {w}\n" for (x, y, z), (u, v, w) in zip(points, own)) +
+                   "".join("f " + " ".join(f"{k + 1}//{k + 1}" for k in face) + "\n" for face in faces))
+
+        def way(a, b):
+            return [y - x for x, y in zip(a, b)]
+
+        def across(u, v):
+            return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+
+        def by_angles(there):
+            sums = [[0.0] * 3 for _ in there]
+            for face in faces:
+                for k in range(3):
+                    u, v = (way(there[face[k]], there[face[(k + step) % 3]]) for step in (1, 2))
+                    normal = across(u, v)
+                    angle = math.acos(sum(a * b for a, b in zip(u, v)) / math.dist(u, [0] * 3) / math.dist(v, [0] * 3))
+                    sums[face[k]] = [s + angle * n / math.dist(normal, [0] * 3) for s, n in zip(sums[face[k]], normal)]
+            return sums
+
+        for scale, rotate, translate in (((1, 1, 1), (0, 0, 0), (0, 0, 0)), ((0.5, 2, 3), (90, 180, 15), (1, -2, 3)), ((-1, 2, 1), (10, 20, 30), (5, 6, 7))):
+            there = [placed(point, scale, rotate, translate) for point in points]
+            turned = [placed([n / s for n, s in zip(normal, scale)], (1, 1, 1), rotate) for normal in own]
+            for file, normals in (("p.off", by_angles(there)), ("n.obj", turned)):
+                mesh = {"file": file, "material": "normals", "scale": list(scale), "rotate": list(rotate), "translate": list(translate), "smooth": True}
+                listed = [{"vertices": [there[k] for k in face], "normals": [normals[k] for k in face], "material": "normals"}
+                          for face in (face[::-1] if scale[0] < 0 else face for face in faces)]
+                a = self.numbers(self.scene("m.json", mesh), "--fit", "--spp", 1)
+                b = self.numbers(self.scene("t.json", triangles=listed), "--fit", "--spp", 1)
+                self.assertLess(sum(abs(x - y) > 1e-4 for x, y in zip(a, b)), 12, f"normals, but for samples at a silhouette: {mesh}")
+                flat = self.numbers(self.scene("f.json", {**mesh, "smooth": False}), "--fit", "--spp", 1)
+                self.assertGreater(sum(abs(x - y) > 0.05 for x, y in zip(a, flat)), 200)
+
+    def test_smooth_notes(self):
+        """Which normals are shown; and a scene that is written again is the same."""
+        self.write("n.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n")
+        self.write("p.off", off([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [(0, 1, 2)]))
+        for mesh, says in (({"file": "n.obj", "smooth": True}, "smooth, by its own normals"), ({"file": "p.off", "smooth": True}, "smooth, by the means of its faces' normals"),
+                           ({"file": "n.obj"}, '"smooth": true shows them')):
+            made = self.run_program("render", self.scene("s.json", {"material": "clay", **mesh}), "--spp", 1, "-o", "x.pfm", "--force")
+            self.assertIn(says, " ".join(made.errors.split()))
+        listed = [{"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "normals": [[-1, 0, 1], [1, 0.3, 1], [0, 1, 3]], "material": "steel"}]
+        first = self.picture(self.scene("s.json", triangles=listed))
+        self.write("again.json", self.succeed("scene", "s.json").stdout.decode())
+        self.assert_same(self.picture("again.json"), first)
+
     # ---- materials and colours ----
 
     def obj(self):
@@ -181,7 +232,7 @@ class Meshes(ProgramTest):
                            ({"file": "cube.off", "material": "clay", "scale": 0}, "meshes[0].scale: found 0, expected a number other than 0"),
                            ({"file": "cube.off", "material": "clay", "scale": [1, 0, 1]}, "meshes[0].scale"),
                            ({"file": "cube.off", "material": "clay", "rotate": 90}, "meshes[0].rotate"),
-                           ({"file": "cube.off", "material": "clay", "smooth": True}, "meshes[0].smooth: not for meshes"),
+                           ({"file": "cube.off", "material": "clay", "smooth": 1}, "meshes[0].smooth: found 1, expected true or false"),
                            ({"file": "cube.off", "material": "clay", "interior": "fog"}, "meshes[0].interior: not for meshes"),
                            ({"file": "cube.off", "material": "clay", "motion": [0, 1, 0]}, "meshes[0].motion: not for meshes"),
                            ({"file": "cube.off", "material": "clay", "colour": 1}, "meshes[0].colour: unknown member"),
@@ -230,7 +281,7 @@ class Meshes(ProgramTest):
         self.write("data/cube.off", off(CORNERS, CUBE))
         mesh = {"file": "data/cube.off", "material": "clay", "rotate": [0, 15, 0]}
         self.scene("s.json", mesh, spheres=[GROUND])
-        document = json.loads(self.succeed("scene", "s.json").stdout)
+        document = json.loads(self.succeed("scene", "s.json").stdout.decode())
         self.assertEqual(document["meshes"], [mesh])
         self.assertNotIn("triangles", document)
         self.succeed("scene", "s.json", "-o", "data/t.json")

@@ -114,6 +114,11 @@ def triangle_optics(*names):
     return Script("tests/agree/test_triangle_optics.py", tuple(f"Optics.test_{name}" for name in names), "4 closed forms")
 
 
+def smooth(*names):
+    """Tests of tests/agree/test_smooth.py."""
+    return Script("tests/agree/test_smooth.py", tuple(f"Smooth.test_{name}" for name in names), "4 closed forms")
+
+
 def patch(path, find, replace):
     return (path, find, replace)
 
@@ -121,6 +126,7 @@ def patch(path, find, replace):
 # A patch of kernel text names no file: the text must stand exactly once in all of kernels/.
 KERNEL, PACK, TRANSFER = "kernels", "host/packed/pack.c", "host/image/transfer.c"
 SHINING = "kernels/light/triangle_lamps.cl"
+FOLD, BENT = "kernels/bsdf/fold.cl", "kernels/integrator/smooth_surface.cl"
 
 MUTANTS = [
     Mutant("quotients as the driver likes them", "GPUs whose division is within 2.5 ulp",
@@ -345,10 +351,10 @@ MUTANTS = [
            [patch("host/meshes/read_obj.c", "number < 0 ? count + number : number - 1;", "number < 0 ? count + number - 1 : number - 1;")],
            [test("test_mesh_read", "obj_numbers")]),
     Mutant("texture coordinates for vertices", "meshes: the last number of a corner for the first",
-           [patch("host/meshes/read_obj.c", "        int64_t ignored = 0;\n        const char *const end = bp_whole_parse(++at, &ignored);",
-                  "        const char *const end = bp_whole_parse(++at, number);"),
-            patch("host/meshes/read_obj.c", "static const char *pass_others(const char *at) {", "static const char *pass_others(const char *at, int64_t *number) {"),
-            patch("host/meshes/read_obj.c", "end = pass_others(end);", "end = pass_others(end, &number);")],
+           [patch("host/meshes/read_obj.c", "static const char *take_others(const char *at, int64_t *normal) {",
+                  "static const char *take_others(const char *at, int64_t *vertex, int64_t *normal) {"),
+            patch("host/meshes/read_obj.c", "if (end != NULL && i == 1) *normal = number;", "if (end != NULL) *vertex = number;\n        if (end != NULL && i == 1) *normal = number;"),
+            patch("host/meshes/read_obj.c", "end = take_others(end, &normal);", "end = take_others(end, &number, &normal);")],
            [test("test_mesh_read", "obj_numbers")]),
     Mutant("joined lines cut", "meshes: a backslash at the end of a line of OBJ",
            [patch("host/meshes/read_obj.c", "const bool goes_on = length > 0 && ", "const bool goes_on = length > 4000 && ")],
@@ -830,7 +836,7 @@ MUTANTS = [
                   "    vertex->emitted = add3(before, scale3(lamp_hit_weight(scene, path, hit->slot, &vertex->sphere, met & hit->enters), "
                   "subtract3(vertex->emitted, before)));\n#endif\n")], [lamp_case("19.1")]),
     Mutant("the choice of a lamp left out of the ratio", "rho without P",
-           [patch(KERNEL, "divide(scatter_pdf(lobe, direction, drawn) * solid_angle, probability)", "scatter_pdf(lobe, direction, drawn) * solid_angle")], [lamp_case("32.2")]),
+           [patch(KERNEL, "divide(folded_pdf(lobe, direction, drawn) * solid_angle, probability)", "folded_pdf(lobe, direction, drawn) * solid_angle")], [lamp_case("32.2")]),
     Mutant("the ratio of densities without a bound", "this program: infinite over infinite",
            [patch(KERNEL, "#define RATIO_MAX R(1e15)", "#define RATIO_MAX R(1e30)")], [lamp_case("27.2")]),
     Mutant("balance heuristic at hits alone", "weights that do not add up to 1",
@@ -964,6 +970,46 @@ MUTANTS = [
     Mutant("lamps without power end a node", "this program: triangles whose area a float does not hold",
            [patch("host/packed/lamp_tree.c", "count += has_power(builder, lamp);", "count += has_power(builder, lamp) || true;")],
            [test("test_lamp_tree", "triangles_that_emit")]),
+    # ---- smooth triangles ------------------------------------------------------------------------------------
+    Mutant("what is folded keeps the density of one direction", "this program: two directions become one",
+           [patch(FOLD, "return fold.here + fold.there;", "return fold.here;")], [smooth("disc")]),
+    Mutant("both directions have the density of one", "this program: the fold counted twice",
+           [patch(FOLD, "lobe, fold.beyond, below, scatter_pdf(lobe, fold.beyond, 0));", "lobe, fold.beyond, below, scatter_pdf(lobe, direction, 0));")], [smooth("disc")]),
+    Mutant("light of lamps leaks through smooth triangles", "classic: shading normals that see a lamp below the surface",
+           [patch(FOLD, "    return choose(below, splat(0), density);", "    return density;"),
+            patch(FOLD, "(vbool_not(glass) & below)", "(vbool_not(glass) & vbool_none)")], [smooth("no_light_from_below")]),
+    Mutant("directions below a smooth triangle stay there", "classic: shading normals",
+           [patch(FOLD, "if (!any_lane(wrong)) return sample;", "return sample;")], [smooth("sky")]),
+    Mutant("directions below a smooth triangle are turned around", "this program: mirrored in the point, not in the plane",
+           [patch(FOLD, "normalise3(madd3(side * lift, n, sample.direction))", "scale3(splat(-1), sample.direction)")], [smooth("mirrors"), smooth("sampling"), check("smooth-metal", 1024)]),
+    Mutant("glass lets nothing through that its normal sends up", "this program: refraction is folded down",
+           [patch(FOLD, "const vreal side = choose(sample.transmitted, splat(-1), splat(1));", "const vreal side = splat(1);")], [smooth("invisible"), smooth("glass_furnace")]),
+    Mutant("frosted glass counts both parts on either side", "this program: each part on its own side of the normal",
+           [patch(FOLD, "choose((glass & other_side) |", "choose((glass & vbool_none) |")], [smooth("sampling"), check("smooth-frosted-lamps", 1024)]),
+    Mutant("a folded direction has one weight", "this program: the mean of both by their densities",
+           [patch(FOLD, "const vreal share = divide(fold.there, choose(mixed, both, splat(1)));", "const vreal share = splat(1);")], [smooth("sampling"), check("smooth-lamps", 1024)]),
+    Mutant("mirrors point into a smooth surface", "classic: shading normals at grazing angles",
+           [patch(BENT, "return choose3(rise < least,", "return choose3(rise < least & vbool_none,")], [smooth("mirrors")]),
+    Mutant("a mirror is lifted twice", "this program: by what it lacks",
+           [patch(BENT, "madd3(least - rise, n, mirrored)", "madd3(least - rise - rise, n, mirrored)")], [smooth("mirrors")]),
+    Mutant("the least rise does not follow the eye", "this program: plain triangles would be bent",
+           [patch(BENT, "smaller(R(-0.5) * dot3(d, n), splat(MIRROR_RISE))", "splat(MIRROR_RISE)")], [smooth("mirrors")]),
+    Mutant("Lambert's surfaces are bent, too", "this program: what looks the same from everywhere",
+           [patch(BENT, "bent = choose3(has_kind(surface, KIND_LAMBERTIAN), normal, bent);", "")], [smooth("sky")]),
+    Mutant("normals that point away stay so", "classic: the side of a normal",
+           [patch(BENT, "dot3(mean, surface->normal) < splat(0), splat(-1), splat(1))", "dot3(mean, surface->normal) < splat(0), splat(1), splat(1))")], [smooth("sky"), smooth("mirrors")]),
+    Mutant("normals of two vertices are exchanged", "classic: b for c",
+           [patch(BENT, "madd3(shares->b, normals.b, madd3(shares->c, normals.c,", "madd3(shares->c, normals.b, madd3(shares->b, normals.c,")], [smooth("ball")]),
+    Mutant("a triangle shows the normals of another", "this program: where a slot's normals stand",
+           [patch("kernels/bvh/hit.cl", "of[i] = gather_split_real(geometry->triangle_normals, i * TREE_WIDTH, place);", "of[i] = gather_split_real(geometry->triangle_normals, i * TREE_WIDTH, lane);")], [smooth("ball")]),
+    Mutant("normals are scaled as points are", "classic: the inverse of the scale",
+           [patch("host/scene/placement.c", "normal[a] /= placement->scale[a];", "normal[a] *= placement->scale[a];")], [mesh_scenes("smooth")]),
+    Mutant("normals of a mirrored mesh stay with their corners", "this program: vertices change their order",
+           [patch("host/formats/mesh_triangles.c", "mesh->face_normals[face][mirrored && k > 0 ? 3 - k : k]", "mesh->face_normals[face][mirrored && k > 9 ? 3 - k : k]")], [mesh_scenes("smooth")]),
+    Mutant("faces count by their number", "classic: vertex normals that depend on how polygons are cut",
+           [patch("host/scene/vertex_normals.c", "sums[face[k]][a] += angle * (normal[a] / length);", "sums[face[k]][a] += angle > 0 ? normal[a] / length : 0;")], [mesh_scenes("smooth")]),
+    Mutant("a normal's number is off by one", "classic: OBJ counts from 1",
+           [patch("host/meshes/read_obj.c", "obj->builder->normal_count + number : number - 1;", "obj->builder->normal_count + number : number;")], [mesh_scenes("smooth")]),
     # ---- lamps that move, and lamps behind boundaries --------------------------------------------------------
     Mutant("lamps stay where the shutter opens", "rays to where a lamp was",
            [patch(KERNEL, "child->centre = choose3(lamp, centre_at(&scene->geometry, slot, time, child->centre), child->centre);",
@@ -1774,7 +1820,7 @@ MUTANTS = [
             patch("host/scene/placement.c", "point[a] += placement->translate[a];", "point[a] = (point[a] + placement->translate[a]) * placement->scale[a];")],
            [mesh_scenes("placement")]),
     Mutant("mirrored meshes inside out", "meshes: the winding under a mirror",
-           [patch("host/formats/mesh_triangles.c", "mirrored && k > 0 ? 3 - k : k", "mirrored && k > 3 ? 3 - k : k")],
+           [patch("host/formats/mesh_triangles.c", "mesh->faces[f][mirrored && k > 0 ? 3 - k : k]", "mesh->faces[f][mirrored && k > 3 ? 3 - k : k]")],
            [mesh_scenes("mirrored_glass")]),
     Mutant("the colour of one vertex for the mean", "meshes: colours of vertices",
            [patch("host/formats/mesh_triangles.c", "mesh->vertex_colors[mesh->faces[face][k]][c]", "mesh->vertex_colors[mesh->faces[face][0]][c]")],
@@ -1845,8 +1891,8 @@ MUTANTS = [
                   "               y = wide_choose(other, wide_multiply(wide(-shear->direction.y), wide(wide_near(divided))), wide_divide(wide(-shear->direction.y), edges.slope));")],
            [edges_and_turns("double")]),
     Mutant("a point on a triangle along the ray, in float", "classic: origin + t * direction",
-           [patch("kernels/bvh/hit.cl", "    triangle_surface(ray, &triangle, &place, &outward);",
-                  "    triangle_surface(ray, &triangle, &place, &outward);\n"
+           [patch("kernels/bvh/hit.cl", "    triangle_surface(ray, &triangle, WITH_SHARES(shares) &place, &outward);",
+                  "    triangle_surface(ray, &triangle, WITH_SHARES(shares) &place, &outward);\n"
                   "    place.high = madd3(to_real(hit->t), ray->direction, ray->origin.high);\n    place.low = zero3();")],
            [triangle_cases()]),
     Mutant("a point's error in double, of pairs of floats", "triangles: the bound without a device's arithmetic",

@@ -62,6 +62,20 @@ expected = rgb(listed(materials, np.repeat(list(materials), 2).tolist()))
 assert np.array_equal(rgb(with_mesh(CORNERS, QUADS, of_quads, material="clay")), expected)
 assert np.array_equal(rgb(with_mesh(CORNERS, FACES, (0.5, 0.25, 0.125), material="clay")), rgb(with_mesh(CORNERS, FACES, material="clay")))
 
+# Normals of vertices are those of a document's triangles, of any length and layout; without them, those of faces.
+normals = (CORNERS - 0.5) * 2
+smooth = [{"vertices": CORNERS[face].tolist(), "normals": normals[face].tolist(), "material": "clay"} for face in FACES]
+expected = rgb(ballpark.Scene({**DOCUMENT, "triangles": smooth}))
+for given in (normals, normals.astype(np.float32), (normals * 4).tolist(), np.asfortranarray(normals)):
+    assert np.allclose(rgb(with_mesh(CORNERS, FACES, normals=given, material="clay")), expected, atol=1e-4)
+assert not np.allclose(rgb(with_mesh(CORNERS, FACES, material="clay")), expected, atol=0.01)
+by_faces = rgb(with_mesh(CORNERS, FACES, smooth=True, material="clay"))  # a cube's corners have three right angles
+assert np.allclose(by_faces, expected, atol=1e-4)
+refused(ballpark.SceneError, "normals: found an array of shape (7, 3), expected (8, 3)", with_mesh, CORNERS, FACES, normals=normals[:7], material="clay")
+refused(ballpark.SceneError, "normals: found no finite number for vertex 1", with_mesh, CORNERS, FACES, normals=np.where(normals > 0, np.nan, normals), material="clay")
+framed = ballpark.render(vertices=CORNERS, faces=FACES, normals=normals, width=24, spp=4)
+assert np.array_equal(np.array(framed.radiance), np.array(ballpark.render(ballpark.Mesh(CORNERS, FACES, normals=normals), width=24, spp=4).radiance))
+
 # Numbers go through a map.
 mapped = rgb(with_mesh(CORNERS, FACES, np.arange(12.0), material="clay", cmap="viridis"))
 assert len(np.unique(mapped.round(3), axis=0)) > 3

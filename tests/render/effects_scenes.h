@@ -22,6 +22,7 @@ typedef struct EffectsScene {
     BpMaterial materials[28];
     BpSphere spheres[48];
     BpTriangle triangles[4];
+    float normals[3][3][3];
     BpTexture textures[10];
     BpImage image, sky, light, *images[3];
     float image_texels[5 * 3 * 3], sky_texels[8 * 4 * 3], light_texels[2 * 3];
@@ -55,6 +56,8 @@ static inline bool effects_can_occur(uint32_t bits, bool tree) {
     /* Rays are sent to them where they are sent to others, and there are some. */
     const uint32_t shining = EFFECT_BIT(TRIANGLES) | EFFECT_BIT(LAMPS) | EFFECT_BIT(EMISSION);
     if (bp_effects_has(bits, BP_EFFECT_TRIANGLE_LAMPS) && (bits & shining) != shining) return false;
+    if (bp_effects_has(bits, BP_EFFECT_SMOOTH_NORMALS) && !bp_effects_has(bits, BP_EFFECT_TRIANGLES))
+        return false;
     /* Of an image around it knows no light. */
     if (bp_effects_has(bits, BP_EFFECT_SHADOW_CATCHER) && bp_effects_has(bits, BP_EFFECT_ENVIRONMENT))
         return false;
@@ -247,6 +250,15 @@ static inline void effects_triangles(EffectsScene *made, uint32_t bits) {
     for (int i = 0; i < 4; ++i) {
         memcpy(made->triangles[i].vertices, at[i], sizeof at[i]);
         made->triangles[i].albedo = BP_NO_ALBEDO;
+    }
+    /* Of one wall, bulging and on either side of the plane, and of one triangle that crosses another. */
+    static const float normals[3][3][3] = {{{-0.6f, 0, 0.8f}, {0.6f, 0, 0.8f}, {0, -0.8f, -0.6f}},
+                                           {{0}},
+                                           {{-0.8f, 0, 0.6f}, {0.8f, 0, 0.6f}, {0, 1, 0}}};
+    if (bp_effects_has(bits, BP_EFFECT_SMOOTH_NORMALS)) {
+        memcpy(made->normals, normals, sizeof normals);
+        made->scene.normals = made->normals;
+        made->scene.normal_count = 3;
     }
     if (!bp_effects_has(bits, BP_EFFECT_TRIANGLE_LAMPS)) return;
     made->triangles[3].material = (uint32_t)made->scene.material_count;

@@ -110,7 +110,10 @@ static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOption
     worker->real_size = sizeof(float);
     worker->has_lamps = true; /* the program may count rays to them */
     worker->has_triangles = bp_effects_has(setup.program.effects, BP_EFFECT_TRIANGLES);
+    worker->has_normals =
+        worker->has_triangles && bp_effects_has(setup.program.effects, BP_EFFECT_SMOOTH_NORMALS);
     worker->first_triangles = packed.tree.first_triangles;
+    worker->normal_leaves = packed.tree.normal_leaves;
     worker->coloured_slots = packed.coloured_slots;
     worker->width = setup.width;
     worker->pixels = setup.width * setup.height;

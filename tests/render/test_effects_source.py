@@ -47,6 +47,7 @@ MARKS = {
     "MEDIA": ["medium_around", "exp_minus", "interface_sample"],
     "CAUSTICS": [],  # FOCUSING
     "TRIANGLE_LAMPS": [],  # TOGETHER, SHINING
+    "SMOOTH_NORMALS": [],  # TOGETHER
     "TRIANGLES": ["triangle_decide", "load_triangle", "first_triangles", "coloured_slots"],
     "SHADOW_CATCHER": ["meets_catcher", "light_of_catcher", "lies_in_shadow"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
@@ -62,7 +63,9 @@ SHARED = {
 }
 # Code that needs all of these.
 TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURES", "NOISE"},
-            "image_texture": {"TEXTURES", "IMAGES"}, " TriangleView": {"TRIANGLES", "TRIANGLE_LAMPS"}}
+            "image_texture": {"TEXTURES", "IMAGES"}, " TriangleView": {"TRIANGLES", "TRIANGLE_LAMPS"},
+            "smooth_surface": {"TRIANGLES", "SMOOTH_NORMALS"}, "scatter_folded": {"TRIANGLES", "SMOOTH_NORMALS"},
+            "normal_leaves": {"TRIANGLES", "SMOOTH_NORMALS"}, "Shares": {"TRIANGLES", "SMOOTH_NORMALS"}}
 # Code that needs LAMPS, something to be lit, and one of the effects named.
 LIT = {"LAMBERTIAN", "METAL", "MEDIA", "OREN_NAYAR", "ROUGH_METAL", "GLOSSY", "ROUGH_DIELECTRIC"}
 NEEDING_OTHERS = {

@@ -22,11 +22,11 @@ GOOD = {
     "lighting": "sky",
     "backdrop": {"bottom": [0, 0, 0], "top": [1, 1, 1]},
     "shadow_catcher": {"height": -1.5, "up": [0, 0, 2]},
-    "triangles": [{"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "material": "m"}],
+    "triangles": [{"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "normals": [[0, 0, 2], [-1, 0, 1], [0, 1e-3, 0]], "material": "m"}],
     "quads": [{"corner": [0, 0, 0], "u": [1, 0, 0], "v": [0, 1e9, 0], "material": "m"}],
     "boxes": [{"corners": [[0, 0, 0], [1, 1, 1]], "rotate": [0, 15, 0], "translate": [1, 2, 3], "material": "m"}, {"corners": [[0, 0, 0], [1, 1, 1]], "material": "m"}],
     "meshes": [{"file": "a.ply", "material": "m", "scale": 2, "rotate": [0, 15, 0], "translate": [1, 2, 3]},
-               {"file": "a.obj", "materials": {"bark": "m"}, "scale": [1, -2, 1]}],
+               {"file": "a.obj", "materials": {"bark": "m"}, "scale": [1, -2, 1], "smooth": True}],
     "transfer": "srgb",
     "textures": {
         "s": {"type": "checker", "colors": [[0, 0.5, 1], 3], "size": 0.1},
@@ -108,7 +108,7 @@ BAD = [
     (["particles", 0, "color", "range"], [1]), (["particles", 0, "bonds"], 1), (["particles", 0, "bonds", "radius"], 0),
     (["particles", 0, "box"], "yes"), (["particles", 0, "colour"], "element"), (["particles"], {}),
     (["meshes", 0, "file"], None), (["meshes", 0, "material"], None), (["meshes", 0, "scale"], 0), (["meshes", 1, "scale"], [1, 2]),
-    (["meshes", 1, "scale"], [1, 0, 1]), (["meshes", 1, "materials"], ["m"]), (["meshes", 1, "materials", "bark"], 1), (["meshes", 0, "smooth"], True),
+    (["meshes", 1, "scale"], [1, 0, 1]), (["meshes", 1, "materials"], ["m"]), (["meshes", 1, "materials", "bark"], 1), (["meshes", 0, "smooth"], 1), (["triangles", 0, "normals"], [[0, 0, 1]]), (["triangles", 0, "normals"], [[0, 0, 1], [0, 0, 1], [0, 1]]), (["triangles", 0, "normals", 1], [0, 0, 0]),
     (["meshes", 0, "rotate"], 90), (["meshes"], {}),
     (["clouds", 0, "file"], None), (["clouds", 0, "radius"], 0), (["clouds", 0, "materials"], []),
 ]
