@@ -238,6 +238,7 @@ typedef struct BpSceneInfo {
     size_t spheres, materials;
     BpTransfer transfer;
     size_t triangles; /* those of quads and boxes too */
+    size_t capsules;
 } BpSceneInfo;
 BP_API void bp_scene_info(const BpScene *scene, BpSceneInfo *info);
 

@@ -53,9 +53,9 @@ static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
     return bp_material_types[kind].outcome;
 }
 
-/* "sphere 3"; of triangles also which member lists it. */
+/* "sphere 3"; of other shapes also which member lists it. */
 static const char *shape_name(const BpScene *scene, uint32_t shape, char text[BP_SPHERE_NAME_SIZE]) {
-    if (shape >= scene->sphere_count) return bp_triangle_name(scene, shape - scene->sphere_count, text);
+    if (shape >= scene->sphere_count) return bp_shape_name(scene, shape, text);
     snprintf(text, BP_SPHERE_NAME_SIZE, "sphere %" PRIu32, shape);
     return text;
 }
@@ -209,13 +209,15 @@ static void print_heading(const char *path, const BpScene *scene, FILE *out) {
     bp_print_escaped(path, false, out);
     fputs(": ", out);
     bp_print_escaped(info.title, false, out);
-    char spheres[32], triangles[32], both[96] = "";
+    char spheres[32], triangles[32], capsules[32], both[96] = "", all[96] = "";
     bp_format_whole(info.spheres, spheres, sizeof spheres);
     bp_format_whole(info.triangles, triangles, sizeof triangles);
     if (info.triangles > 0)
         snprintf(both, sizeof both, ", %s triangle%s", triangles, bp_plural(info.triangles));
-    fprintf(out, "%s%s sphere%s%s, %zu material%s, %ux%u\n", info.title[0] != '\0' ? "; " : "", spheres,
-            bp_plural(info.spheres), both, info.materials, bp_plural(info.materials), info.width,
+    bp_format_whole(info.capsules, capsules, sizeof capsules);
+    if (info.capsules > 0) snprintf(all, sizeof all, ", %s capsule%s", capsules, bp_plural(info.capsules));
+    fprintf(out, "%s%s sphere%s%s%s, %zu material%s, %ux%u\n", info.title[0] != '\0' ? "; " : "", spheres,
+            bp_plural(info.spheres), both, all, info.materials, bp_plural(info.materials), info.width,
             info.height);
 }
 
@@ -488,10 +490,11 @@ static json_t *scene_json(const char *path, const BpScene *scene, const BpEffect
         json_array_append_new(list, json_pack("{s:s, s:s, s:b, s:s}", "name", effects[e].name, "description",
                                               effects[e].description, "simulated", effects[e].simulated,
                                               "reason", effects[e].reason));
-    return json_pack("{s:o, s:s, s:I, s:I, s:I, s:o, s:s, s:s}", "scene", bp_json_text(path), "title",
+    return json_pack("{s:o, s:s, s:I, s:I, s:I, s:I, s:o, s:s, s:s}", "scene", bp_json_text(path), "title",
                      info.title, "spheres", (json_int_t)info.spheres, "triangles", (json_int_t)info.triangles,
-                     "materials", (json_int_t)info.materials, "effects", list, "acceleration",
-                     bp_acceleration_name(chosen), "acceleration_reason", reason);
+                     "capsules", (json_int_t)info.capsules, "materials", (json_int_t)info.materials,
+                     "effects", list, "acceleration", bp_acceleration_name(chosen), "acceleration_reason",
+                     reason);
 }
 
 /* ---- the command -------------------------------------------------------------------------------------- */

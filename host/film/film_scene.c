@@ -19,10 +19,13 @@ static double largest(const double rgb[3]) {
 static double shape_albedo(const BpScene *scene, size_t shape) {
     const BpMaterial *material = &scene->materials[bp_shape_material(scene, shape)];
     const uint32_t own = bp_shape_albedo(scene, shape);
+    const BpCapsule *const capsule = bp_shape_capsule(scene, shape);
     if (!bp_material_has(material->kind, BP_MEMBER_ALBEDO)) return 1;
     if (own == BP_NO_ALBEDO) return largest(material->albedo);
-    const float *albedo = scene->albedos[own];
-    return (double)fmaxf(albedo[0], fmaxf(albedo[1], albedo[2]));
+    const float *albedo = scene->albedos[own],
+                *other = scene->albedos[capsule != NULL ? capsule->albedo[1] : own];
+    return (double)fmaxf(fmaxf(albedo[0], fmaxf(albedo[1], albedo[2])),
+                         fmaxf(other[0], fmaxf(other[1], other[2])));
 }
 
 /* 1 + a + a^2 + ... of `terms` terms, or a little more. */
@@ -281,6 +284,16 @@ uint64_t bp_scene_hash(const BpScene *scene) {
         hash = mix_colours(hash, scene, &scene->materials[triangle->material], triangle->albedo);
         const float(*const normals)[3] = bp_triangle_normals(scene, i);
         for (int k = 0; k < 9 && normals != NULL; k++) hash = mix_real(hash, (double)normals[k / 3][k % 3]);
+    }
+    if (scene->capsule_count > 0) hash = mix(mix(hash, 0x63617073u), scene->capsule_count);
+    for (size_t i = 0; i < scene->capsule_count; i++) {
+        const BpCapsule *capsule = &scene->capsules[i];
+        const BpMaterial *material = &scene->materials[capsule->material];
+        if (i == 0 || capsule->material != known) material_hash = hash_material(material);
+        known = capsule->material;
+        hash = mix_real(mix(hash, material_hash), capsule->radius);
+        for (int k = 0; k < 2; k++)
+            hash = mix_colours(mix_reals(hash, capsule->ends[k], 3), scene, material, capsule->albedo[k]);
     }
     return hash;
 }

@@ -92,6 +92,12 @@ BpStatus bp_refuse_faults(const BpNode *root, const BpScene *scene, BpError *err
         const BpNode member = bp_node_member(&shape, fault.member);
         return bp_node_fail(member.value != NULL ? &member : &shape, BP_PART_VALUE, err, "%s", fault.text);
     }
+    case BP_FAULT_CAPSULE: {
+        const BpNode capsules = bp_node_member(root, "capsules"),
+                     capsule = bp_node_element(&capsules, fault.index),
+                     member = bp_node_member(&capsule, fault.member);
+        return bp_node_fail(member.value != NULL ? &member : &capsule, BP_PART_VALUE, err, "%s", fault.text);
+    }
     case BP_FAULT_COINCIDENT: {
         /* The place of the error: the later of the two spheres that stands in the document itself, or else
          * the cloud that the later one comes from. */

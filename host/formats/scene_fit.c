@@ -22,10 +22,10 @@ void bp_scene_view(BpScene *scene, double direction[3]) {
         bp_view_direction(camera->view, up, direction);
 }
 
-/* All spheres, those that move once more, where they end, and the vertices of triangles as points. The caller
- * frees them. */
+/* All spheres, those that move once more, where they end, the vertices of triangles as points, and the ends
+ * of capsules. The caller frees them. */
 static BpStatus all_balls(const BpScene *scene, BpSphere **spheres, size_t *count, BpError *err) {
-    *count = scene->sphere_count + scene->moving_count + 3 * scene->triangle_count;
+    *count = scene->sphere_count + scene->moving_count + 3 * scene->triangle_count + 2 * scene->capsule_count;
     *spheres = malloc(*count * sizeof **spheres);
     if (*spheres == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu spheres", *count);
     BpSphere *next = *spheres;
@@ -37,6 +37,10 @@ static BpStatus all_balls(const BpScene *scene, BpSphere **spheres, size_t *coun
     for (size_t i = 0; i < 3 * scene->triangle_count; i++, next++) {
         *next = (BpSphere){.radius = 0};
         memcpy(next->center, scene->triangles[i / 3].vertices[i % 3], sizeof next->center);
+    }
+    for (size_t i = 0; i < 2 * scene->capsule_count; i++, next++) {
+        *next = (BpSphere){.radius = scene->capsules[i / 2].radius};
+        memcpy(next->center, scene->capsules[i / 2].ends[i % 2], sizeof next->center);
     }
     return BP_OK;
 }
@@ -64,7 +68,7 @@ BpStatus bp_scene_fit_camera(const BpNode *node, const BpSceneChanges *changes, 
     const BpSphere *spheres = scene->spheres + first;
     size_t count = scene->sphere_count - first;
     BpSphere *both = NULL;
-    if (first < scene->moving_count || (all && scene->triangle_count > 0)) {
+    if (first < scene->moving_count || (all && scene->triangle_count + scene->capsule_count > 0)) {
         BP_TRY(all_balls(scene, &both, &count, err));
         spheres = both;
     }

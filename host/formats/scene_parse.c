@@ -5,6 +5,7 @@
 #include "mesh_sets.h"
 #include "scene_background.h"
 #include "scene_camera.h"
+#include "scene_capsules.h"
 #include "scene_faults.h"
 #include "scene_fit.h"
 #include "scene_material.h"
@@ -96,19 +97,20 @@ static BpStatus refuse_other_shapes(const BpNode *root, BpError *err) {
     for (size_t i = 0; i < BP_COUNT(shapes); i++) {
         const BpNode shape = bp_node_member(root, shapes[i]);
         if (shape.value != NULL)
-            return bp_node_fail(&shape, BP_PART_NAME, err,
-                                "unknown member; shapes are written in \"spheres\", \"triangles\", \"quads\" "
-                                "and \"boxes\", and files of "
-                                "them named in \"clouds\", \"particles\" or \"meshes\"");
+            return bp_node_fail(
+                &shape, BP_PART_NAME, err,
+                "unknown member; shapes are written in \"spheres\", \"triangles\", \"quads\", "
+                "\"boxes\" and \"capsules\", and files of "
+                "them named in \"clouds\", \"particles\" or \"meshes\"");
     }
     return BP_OK;
 }
 
 BpStatus bp_parse_scene(const BpNode *root, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
     static const char *const names[] = {
-        "format",   "title",    "source",         "camera",    "background", "backdrop",  "lighting",
-        "transfer", "textures", "materials",      "spheres",   "clouds",     "particles", "$schema",
-        "media",    "medium",   "shadow_catcher", "triangles", "quads",      "boxes",     "meshes"};
+        "format",         "title",     "source",  "camera", "background", "backdrop", "lighting", "transfer",
+        "textures",       "materials", "spheres", "clouds", "particles",  "$schema",  "media",    "medium",
+        "shadow_catcher", "triangles", "quads",   "boxes",  "meshes",     "capsules"};
     BP_TRY(refuse_other_shapes(root, err));
     const BpNode former = bp_node_member(root, "light");
     if (former.value != NULL)
@@ -125,6 +127,7 @@ BpStatus bp_parse_scene(const BpNode *root, const BpSceneChanges *changes, BpSce
     const BpNode clouds = bp_node_member(root, "clouds");
     const BpNode particles = bp_node_member(root, "particles");
     const BpNode meshes = bp_node_member(root, "meshes");
+    const BpNode capsules = bp_node_member(root, "capsules");
     const BpNode media = bp_node_member(root, "media");
     const BpNode medium = bp_node_member(root, "medium");
     BP_TRY(bp_parse_camera(&camera, &scene->camera, err));
@@ -146,6 +149,7 @@ BpStatus bp_parse_scene(const BpNode *root, const BpSceneChanges *changes, BpSce
     BpStatus status = bp_material_index_create(scene, &index, err);
     if (status == BP_OK) status = bp_parse_spheres(&spheres, &index, scene, err);
     if (status == BP_OK) status = bp_parse_triangles(root, &index, scene, err);
+    if (status == BP_OK) status = bp_parse_capsules(&capsules, &index, scene, err);
     if (status == BP_OK) status = bp_parse_meshes(&meshes, &index, changes, scene, err);
     if (status == BP_OK) status = bp_parse_clouds(&clouds, &index, changes->flags, scene, err);
     if (status == BP_OK) status = bp_parse_particles(&particles, &index, changes, scene, err);

@@ -435,6 +435,24 @@ static BpStatus put_triangles(FILE *out, const BpScene *scene, BpError *err) {
     return BP_OK;
 }
 
+static BpStatus put_capsules(FILE *out, const BpScene *scene, BpError *err) {
+    fputs(",\n  \"capsules\": [", out);
+    for (size_t i = 0; i < scene->listed_capsules; i++) {
+        const BpCapsule *capsule = &scene->capsules[i];
+        fputs(i > 0 ? ",\n    { \"ends\": [" : "\n    { \"ends\": [", out);
+        put_vector(out, capsule->ends[0]);
+        fputs(", ", out);
+        put_vector(out, capsule->ends[1]);
+        fputs("], \"radius\": ", out);
+        put_number(out, capsule->radius);
+        fputs(", \"material\": ", out);
+        BP_TRY(put_text(out, scene->materials[capsule->material].name, err));
+        fputs(" }", out);
+    }
+    fputs("\n  ]", out);
+    return BP_OK;
+}
+
 /* ---- the whole ---------------------------------------------------------------------------------------- */
 
 BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
@@ -463,6 +481,7 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     if (written_materials(scene) > 0) BP_TRY(put_materials(out, scene, err));
     if (written_spheres(scene) > 0) BP_TRY(put_spheres(out, scene, err));
     if (bp_scene_listed_triangles(scene) > 0) BP_TRY(put_triangles(out, scene, err));
+    if (scene->listed_capsules > 0) BP_TRY(put_capsules(out, scene, err));
     if (scene->mesh_file_count > 0) put_meshes(out, scene);
     if (scene->has_particles) put_particles(out, scene);
     fputs("\n}\n", out);

@@ -198,7 +198,7 @@ static void name_lamps(size_t lamps, size_t discs, bool image, size_t size, char
 static bool sky_outshines_lamps(const BpScene *scene) {
     const double sky =
         fmin(bp_luminance_of(scene->background_bottom), bp_luminance_of(scene->background_top));
-    if (scene->triangle_count > 0) return false; /* they may hide the sky, too */
+    if (scene->triangle_count + scene->capsule_count > 0) return false; /* they may hide the sky, too */
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         const BpSphere *sphere = &scene->spheres[i];
         if (bp_luminance_of(scene->materials[sphere->material].emit) > sky) return false;
@@ -244,6 +244,8 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
         lit += is_lit;
         both += is_lamp && is_lit;
     }
+    for (size_t c = 0; c < scene->capsule_count; ++c)
+        lit += bp_material_is_lit(&scene->materials[scene->capsules[c].material]);
     name_lamps(lamps, discs, image, sizeof all, all);
     if (lamps == 0 && !sky && enclosing != SIZE_MAX)
         snprintf(reason, size, "the only lamp surrounds everything: every path finds it");
@@ -325,6 +327,14 @@ static bool explain_triangles(const BpScene *scene, size_t size, char *reason) {
     return scene->triangle_count > 0;
 }
 
+static bool explain_capsules(const BpScene *scene, size_t size, char *reason) {
+    if (scene->capsule_count == 0)
+        snprintf(reason, size, "no capsules");
+    else
+        snprintf(reason, size, "%zu capsule%s", scene->capsule_count, bp_plural(scene->capsule_count));
+    return scene->capsule_count > 0;
+}
+
 /* Whether rays are sent to triangles, where they are `sent` to lamps. */
 static bool explain_triangle_lamps(const BpScene *scene, bool sent, size_t size, char *reason) {
     const size_t emitting = bp_scene_emitting_triangles(scene);
@@ -393,7 +403,9 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
         effects->bits |= 1u << BP_EFFECT_TRIANGLE_LAMPS;
     if (explain_smooth_normals(scene, size, effects->reason[BP_EFFECT_SMOOTH_NORMALS]))
         effects->bits |= 1u << BP_EFFECT_SMOOTH_NORMALS;
-    effects->triangles_alone = scene->triangle_count > 0 && scene->sphere_count == 0;
+    if (explain_capsules(scene, size, effects->reason[BP_EFFECT_CAPSULES]))
+        effects->bits |= 1u << BP_EFFECT_CAPSULES;
+    effects->triangles_alone = scene->triangle_count > 0 && scene->sphere_count + scene->capsule_count == 0;
     if (!bp_effects_has(effects->bits, BP_EFFECT_LAMPS))
         snprintf(effects->reason[BP_EFFECT_CAUSTICS], size, "no rays are sent to lamps");
     else

@@ -40,7 +40,8 @@
     X(CAUSTICS, "caustics", "rays to lamps through balls of glass and off mirrors", "", "")                  \
     X(TRIANGLES, "triangles", "triangles beside spheres, or in place of them", "", "")                       \
     X(TRIANGLE_LAMPS, "triangle_lamps", "rays to triangles that emit", "", "")                               \
-    X(SMOOTH_NORMALS, "smooth_normals", "triangles that look curved, by normals at their vertices", "", "")
+    X(SMOOTH_NORMALS, "smooth_normals", "triangles that look curved, by normals at their vertices", "", "")  \
+    X(CAPSULES, "capsules", "capsules beside spheres: lines with a radius and round ends", "", "")
 
 typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,

@@ -138,6 +138,8 @@ bool bp_focusers_explain(const BpScene *scene, size_t size, char *reason) {
         snprintf(reason, size, "left to chance where spheres move");
     } else if (scene->triangle_count > 0) {
         snprintf(reason, size, "left to chance where there are triangles");
+    } else if (scene->capsule_count > 0) {
+        snprintf(reason, size, "left to chance where there are capsules");
     } else {
         size_t pairs = 0;
         for (size_t f = 0; f < count; ++f) {

@@ -50,7 +50,8 @@ size_t bp_enclosing_lamp(const BpScene *scene) {
     size_t largest = 0;
     for (size_t i = 1; i < scene->sphere_count; ++i)
         if (fabs(scene->spheres[i].radius) > fabs(scene->spheres[largest].radius)) largest = i;
-    if (scene->sphere_count < 2 || scene->triangle_count > 0 || !bp_shape_emits(scene, largest))
+    if (scene->sphere_count < 2 || scene->triangle_count + scene->capsule_count > 0 ||
+        !bp_shape_emits(scene, largest))
         return SIZE_MAX;
     const BpSphere *shell = &scene->spheres[largest];
     for (size_t i = 0; i < scene->sphere_count; ++i) {

@@ -497,6 +497,15 @@ typedef struct Slots {
     size_t count;
 } Slots;
 
+/* Of the half of a capsule by its other end. */
+static void pack_other_colour(BpPacked *packed, size_t slot, const float *own, const double *albedo) {
+    const size_t width = packed->tree.width, leaf = slot / width;
+    for (size_t a = 0; a < ALBEDO_REALS; ++a)
+        bp_reals_store(packed->tree.leaf_axes, packed->single_precision,
+                       leaf * AXIS_REALS(width) + (3 + a) * width + slot % width,
+                       own != NULL ? (double)own[a] : albedo[a]);
+}
+
 #define SLOT_CHUNK 64u
 
 /* Shapes are asked in the order of the tree, so this mostly waits for memory. First all shapes of the chunk
@@ -523,6 +532,10 @@ static void pack_slot_chunk(const Slots *slots, size_t first, size_t count) {
         for (size_t a = 0; a < ALBEDO_REALS; ++a)
             bp_reals_store(packed->slot_albedo, packed->single_precision, ALBEDO_REALS * (first + s) + a,
                            own != NULL ? (double)own[a] : scattered->albedo[a]);
+        const BpCapsule *capsule = used ? bp_shape_capsule(scene, shapes[s]) : NULL;
+        if (capsule != NULL)
+            pack_other_colour(packed, first + s, own != NULL ? scene->albedos[capsule->albedo[1]] : NULL,
+                              scattered->albedo);
     }
 }
 

@@ -78,6 +78,29 @@ static void add_vertices(const BpScene *scene, const double origin[3], BpRoundin
              bp_triangle_name(scene, moved.sphere, name), others(&moved, more), moved.ratio);
 }
 
+/* How far rounding may move an end of a capsule, as a part of its radius. */
+static double axis_shift(const double origin[3], const BpCapsule *capsule) {
+    double square = 0;
+    for (int a = 0; a < 3; ++a) {
+        const double c = capsule->ends[0][a] - origin[a], way = capsule->ends[1][a] - capsule->ends[0][a];
+        const double off = fabs(as_float(c) - c) + fabs(as_float(way) - way);
+        square += off * off;
+    }
+    return sqrt(square) / capsule->radius;
+}
+
+static void add_axes(const BpScene *scene, const double origin[3], BpRoundingWarnings *limits) {
+    Worst moved = {0};
+    char more[48], name[BP_SPHERE_NAME_SIZE];
+    for (size_t i = 0; i < scene->capsule_count; ++i)
+        note(&moved, i, axis_shift(origin, &scene->capsules[i]), BP_ROUNDING_SHIFT);
+    if (moved.count == 0) return;
+    snprintf(limits->remedy[limits->count], sizeof limits->remedy[0], "a camera closer to it");
+    snprintf(limits->text[limits->count++], sizeof limits->text[0],
+             "an end of %s%s is displaced by %.2g of its radius in single precision",
+             bp_capsule_name(scene, moved.sphere, name), others(&moved, more), moved.ratio);
+}
+
 /* A shell's wall: two dielectrics around one centre, found by sorting on the rounded centre and the radius.
  */
 typedef struct Shell {
@@ -190,6 +213,7 @@ void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundin
                  bp_sphere_name(scene, thin.sphere, name), others(&thin, more), wall, thin.ratio);
     }
     add_vertices(scene, origin, limits);
+    add_axes(scene, origin, limits);
     add_lens(&scene->camera, limits);
 }
 
@@ -201,8 +225,8 @@ BpStatus bp_rounding_check_indices(const BpScene *scene, BpPrecision precision, 
         if (material->kind != BP_MATERIAL_DIELECTRIC ||
             (index >= 1 / BP_SINGLE_INDEX_MAX && index <= BP_SINGLE_INDEX_MAX))
             continue;
-        while (i < scene->sphere_count && scene->spheres[i].material != m) ++i;
-        if (i == scene->sphere_count) continue;
+        while (i < bp_scene_shapes(scene) && bp_shape_material(scene, i) != m) ++i;
+        if (i == bp_scene_shapes(scene)) continue;
         char name[BP_SPHERE_NAME_SIZE];
         bp_printable(material->name, name, sizeof name);
         return bp_fail_with(

@@ -33,6 +33,7 @@ typedef struct Scan {
     Largest candidates; /* of all */
     BpBounds *bounds;   /* one a block, without the candidates */
     BpTreeItem *items;  /* without the candidates */
+    BpTreeItem *capsule_items;
 } Scan;
 
 static bool larger(const BpScene *scene, uint32_t a, uint32_t b) {
@@ -80,9 +81,22 @@ static void make_items(void *context, uint32_t block, unsigned thread) {
     scan->bounds[block] = bounds;
 }
 
+/* A capsule's number among the shapes. */
+static uint32_t capsule_shape(const BpScene *scene, size_t capsule) {
+    return (uint32_t)(scene->sphere_count + scene->triangle_count + capsule);
+}
+
+static void make_capsule_items(void *context, uint32_t block, unsigned thread) {
+    (void)thread;
+    Scan *scan = context;
+    for (size_t i = bp_block_begin(block); i < bp_block_end(block, scan->scene->capsule_count); ++i)
+        scan->capsule_items[i] =
+            bp_tree_capsule_item(scan->scene, capsule_shape(scan->scene, i), scan->origin);
+}
+
 /* Makes the items of all spheres but the huge ones, which it leaves in `candidates`, the largest first: the
  * longest prefix of the `width` largest spheres of which each is huge against the box around all spheres that
- * are not among the `width` largest. Returns the number of items. */
+ * are not among the `width` largest; then those of all capsules. Returns the number of items. */
 static uint32_t scan_spheres(Scan *scan, BpThreadPool *pool) {
     const uint32_t count = (uint32_t)scan->scene->sphere_count, blocks = bp_block_count(count);
     bp_parallel_for(pool, find_largest, scan, blocks);
@@ -104,13 +118,17 @@ static uint32_t scan_spheres(Scan *scan, BpThreadPool *pool) {
     for (uint32_t k = huge; k < candidates->count; ++k)
         scan->items[items++] = bp_tree_item(scan->scene, candidates->index[k], scan->origin);
     candidates->count = huge;
-    return items;
+    scan->capsule_items = scan->items + items;
+    bp_parallel_for(pool, make_capsule_items, scan, bp_block_count((uint32_t)scan->scene->capsule_count));
+    return items + (uint32_t)scan->scene->capsule_count;
 }
 
 static BpStatus build_list(const BpTreeWriter *writer, BpError *err) {
     BpTree *tree = writer->tree;
-    const uint32_t count = (uint32_t)writer->scene->sphere_count, width = tree->width;
-    const uint32_t triangles = (uint32_t)writer->scene->triangle_count;
+    const BpScene *scene = writer->scene;
+    const uint32_t spheres = (uint32_t)scene->sphere_count, width = tree->width;
+    const uint32_t count = spheres + (uint32_t)scene->capsule_count,
+                   triangles = (uint32_t)scene->triangle_count;
     tree->first_triangles = (count + width - 1) / width;
     tree->first_leaves = tree->leaf_count = tree->first_triangles + (triangles + width - 1) / width;
     BP_TRY(bp_tree_allocate(tree, 0, tree->leaf_count, err));
@@ -121,8 +139,11 @@ static BpStatus build_list(const BpTreeWriter *writer, BpError *err) {
         BpTreeItem items[BP_TREE_WIDTH_MAX];
         uint32_t n = 0;
         for (; n < width && first + n < all; ++n)
-            items[n] = flat ? bp_tree_triangle_item(writer->scene, first + n, writer->origin)
-                            : bp_tree_item(writer->scene, first + n, writer->origin);
+            items[n] =
+                flat ? bp_tree_triangle_item(scene, first + n, writer->origin)
+                : first + n < spheres
+                    ? bp_tree_item(scene, first + n, writer->origin)
+                    : bp_tree_capsule_item(scene, capsule_shape(scene, first + n - spheres), writer->origin);
         if (flat)
             bp_tree_write_triangles(writer, leaf, items, n);
         else
@@ -178,7 +199,7 @@ static BpStatus build_tree(BpTreeWriter *writer, unsigned threads, BpError *err)
     const BpBinaryNode *root = NULL;
     BpThreadPool *pool = bp_thread_pool_create(threads);
     Scan scan = {.scene = writer->scene, .origin = writer->origin, .width = tree->width};
-    const size_t item_bytes = ((size_t)count + 1) * sizeof *scan.items;
+    const size_t item_bytes = ((size_t)count + writer->scene->capsule_count + 1) * sizeof *scan.items;
     scan.items = bp_large_pages(malloc(item_bytes), item_bytes);
     scan.largest = malloc(blocks * sizeof *scan.largest);
     scan.bounds = malloc(blocks * sizeof *scan.bounds);
@@ -221,6 +242,7 @@ BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTre
     *tree = (BpTree){.width = width, .single_precision = options->single_precision, .own_slot = NO_SLOT};
     tree->has_motions = options->motions || scene->moving_count > 0;
     tree->has_normals = scene->normal_count > 0;
+    tree->has_axes = options->axes || scene->capsule_count > 0;
     if (width != 2 && width != 4 && width != 8 && width != 16)
         return bp_fail(err, BP_ERR_LIMIT, "a tree is 2, 4, 8 or 16 wide, not %u", width);
     /* A list cannot run out of depth, and neither can a wider tree of up to BP_SPHERES_MAX shapes. */
@@ -248,5 +270,6 @@ void bp_tree_clear(BpTree *tree) {
     free(tree->triangles);
     free(tree->triangle_normals);
     free(tree->leaf_motions);
+    free(tree->leaf_axes);
     *tree = (BpTree){0};
 }

@@ -1,5 +1,5 @@
-/* tree.h: a bounding volume hierarchy over spheres and triangles, with wide nodes and leaves as structures of
- * arrays.
+/* tree.h: a bounding volume hierarchy over spheres, triangles and capsules, with wide nodes and leaves as
+ * structures of arrays.
  *
  * In:    centres, radii and vertices, in double, relative to the camera.
  * Out:   BpTree: node boxes (rounded outward when narrowed), child words, leaves and slots, in the layout of
@@ -18,6 +18,7 @@ typedef struct BpTreeOptions {
     bool list;             /* leaves only, in order of index; no nodes */
     unsigned threads;      /* 0: all cores */
     bool motions;          /* the kernel reads motions, even if no sphere moves */
+    bool axes;             /* the kernel reads axes, even if there are no capsules */
 } BpTreeOptions;
 
 typedef struct BpTree {
@@ -35,7 +36,8 @@ typedef struct BpTree {
     uint32_t *children;    /* node_count * width */
     void *leaves;          /* first_triangles * LEAF_REALS(width) reals */
     uint32_t *slot_sphere; /* leaf_count * width; of triangles: their index, after that of all spheres */
-    /* A leaf holds shapes of one kind. Those from `first_triangles` on hold triangles, the others spheres. */
+    /* A leaf holds shapes of one kind. Those from `first_triangles` on hold triangles, the others spheres, of
+     * which capsules are some, with an axis; their index is after that of all triangles. */
     uint32_t first_triangles;
     uint32_t triangle_leaves; /* leaf_count - first_triangles */
     void *triangles;          /* triangle_leaves * TRIANGLE_REALS(width) reals */
@@ -44,11 +46,14 @@ typedef struct BpTree {
     bool has_motions, has_normals;
     uint32_t motion_leaves; /* first_triangles, or 0 where there are no motions */
     void *leaf_motions;     /* motion_leaves * MOTION_REALS(width) reals */
-    uint32_t own_slot;      /* of the sphere at rest whose surface `origin` lies on, or NO_SLOT */
+    bool has_axes;
+    uint32_t axis_leaves; /* first_triangles, or 0 where there are no axes */
+    void *leaf_axes;      /* axis_leaves * AXIS_REALS(width) reals, of which pack.c writes the colours */
+    uint32_t own_slot;    /* of the sphere at rest whose surface `origin` lies on, or NO_SLOT */
     double build_seconds;
 } BpTree;
 
-/* Builds a tree over the scene's spheres and triangles with `origin` (the camera's position) subtracted.
+/* Builds a tree over the scene's shapes with `origin` (the camera's position) subtracted.
  * Every sphere stands in exactly one slot; boxes hold spheres on all of their way. `origin` stays on its side
  * of every surface at rest, rounded as the spheres may be, and lies on one at most. The result does not
  * depend on the number of threads. On failure `tree` is empty. BP_ERR_MEMORY or BP_ERR_LIMIT. Free with

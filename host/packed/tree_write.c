@@ -9,6 +9,7 @@
 #include "base/pages.h"
 #include "reals.h"
 #include "scene/scene_side.h"
+#include "scene/vector.h"
 #include "scene_types.h"
 
 #include <float.h>
@@ -367,6 +368,47 @@ static BpBounds write_moving(const BpTreeWriter *writer, uint32_t sphere, uint32
     return bounds;
 }
 
+/* The half sizes of a box around a cube's worth of area. */
+static float cube_of(const double half[3]) {
+    const float radius = (float)sqrt((half[0] * half[1] + half[1] * half[2] + half[2] * half[0]) / 3);
+    return fmaxf(radius, FLT_MIN);
+}
+
+BpTreeItem bp_tree_capsule_item(const BpScene *scene, uint32_t shape, const double origin[3]) {
+    const BpCapsule *c = bp_shape_capsule(scene, shape);
+    BpTreeItem item = {.sphere = shape};
+    double half[3];
+    for (int a = 0; a < 3; ++a) {
+        item.center[a] = (float)((c->ends[0][a] + c->ends[1][a]) / 2 - origin[a]);
+        half[a] = fabs(c->ends[1][a] - c->ends[0][a]) / 2 + c->radius;
+    }
+    item.radius = cube_of(half);
+    return item;
+}
+
+/* Writes the axis of a capsule, and returns a box around it: as the scene has it and as it is stored, widened
+ * like a sphere's box, and by the rounding of the axis, whose place is found to better than a real. */
+static BpBounds write_capsule(const BpTreeWriter *writer, const BpCapsule *capsule, uint32_t leaf,
+                              uint32_t lane, double center[3], double *radius) {
+    BpTree *tree = writer->tree;
+    const bool single = tree->single_precision;
+    const double unit = single ? 0x1p-24 : 0x1p-53;
+    BpBounds bounds;
+    const bool long_enough = sqrt(bp_distance2(capsule->ends[0], capsule->ends[1])) >= BP_CAPSULE_LENGTH_MIN;
+    *radius = fmax(capsule->radius, (double)FLT_MIN);
+    for (uint32_t a = 0; a < 3; ++a) {
+        const double axis = long_enough ? capsule->ends[1][a] - capsule->ends[0][a] : 0;
+        center[a] = capsule->ends[0][a] - writer->origin[a];
+        const double low = fmin(center[a], center[a] + axis), high = fmax(center[a], center[a] + axis);
+        const double margin = 8 * unit * (fabs(center[a]) + fabs(axis) + 2 * *radius) + (double)FLT_MIN;
+        bounds.low[a] = low - *radius - margin;
+        bounds.high[a] = high + *radius + margin;
+        bp_reals_store(tree->leaf_axes, single,
+                       (size_t)leaf * AXIS_REALS(tree->width) + a * tree->width + lane, axis);
+    }
+    return bounds;
+}
+
 BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
                             uint32_t count) {
     BpTree *tree = writer->tree;
@@ -378,10 +420,17 @@ BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpT
         uint32_t index = NO_SPHERE;
         double center[3] = {NAN, NAN, NAN}, radius = -1;
         const bool moves = lane < count && bp_sphere_moves(writer->scene, items[lane].sphere);
+        const BpCapsule *capsule = lane < count ? bp_shape_capsule(writer->scene, items[lane].sphere) : NULL;
         for (uint32_t a = 0; a < 3 && tree->has_motions; ++a)
             bp_reals_store(tree->leaf_motions, single, (size_t)leaf * MOTION_REALS(width) + a * width + lane,
                            -0.0);
-        if (moves) {
+        for (uint32_t k = 0; k < AXIS_REALS(1) && tree->has_axes; ++k)
+            bp_reals_store(tree->leaf_axes, single, (size_t)leaf * AXIS_REALS(width) + k * width + lane, 0);
+        if (capsule != NULL) {
+            const BpBounds bounds = write_capsule(writer, capsule, leaf, lane, center, &radius);
+            bp_bounds_add(&box, &bounds);
+            index = items[lane].sphere;
+        } else if (moves) {
             const BpBounds bounds = write_moving(writer, items[lane].sphere, leaf, lane, center, &radius);
             bp_bounds_add(&box, &bounds);
             index = items[lane].sphere;
@@ -393,7 +442,7 @@ BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpT
             for (int a = 0; a < 3; ++a) center[a] = sphere->center[a] - writer->origin[a];
             radius = fabs(sphere->radius);
         }
-        if (lane < count && !moves) {
+        if (lane < count && !moves && capsule == NULL) {
             const BpBounds bounds =
                 single ? bp_tree_item_bounds(&items[lane]) : sphere_bounds(center, radius);
             bp_bounds_add(&box, &bounds);
@@ -420,8 +469,7 @@ BpTreeItem bp_tree_triangle_item(const BpScene *scene, uint32_t triangle, const 
         item.center[a] = (float)((low + high) / 2 - origin[a]);
         half[a] = (high - low) / 2;
     }
-    item.radius = (float)sqrt((half[0] * half[1] + half[1] * half[2] + half[2] * half[0]) / 3);
-    item.radius = fmaxf(item.radius, FLT_MIN);
+    item.radius = cube_of(half);
     return item;
 }
 
@@ -518,8 +566,13 @@ BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError
         tree->motion_leaves = (uint32_t)spheres;
         tree->leaf_motions = bp_own_pages(s * MOTION_REALS(width), real_size);
     }
+    if (tree->has_axes) {
+        tree->axis_leaves = (uint32_t)spheres;
+        tree->leaf_axes = bp_own_pages(s * AXIS_REALS(width), real_size);
+    }
     if (tree->node_boxes != NULL && tree->children != NULL && tree->leaves != NULL &&
         tree->slot_sphere != NULL && (tree->leaf_motions != NULL || !tree->has_motions) &&
+        (tree->leaf_axes != NULL || !tree->has_axes) &&
         (tree->triangles != NULL || tree->triangle_leaves == 0) &&
         (tree->triangle_normals != NULL || tree->normal_leaves == 0))
         return BP_OK;

@@ -38,14 +38,17 @@ typedef struct BpTreeWriter {
  * that moves the splits see the ball around its way. */
 BpTreeItem bp_tree_item(const BpScene *scene, uint32_t sphere, const double origin[3]);
 
+/* A capsule, by its number among the shapes, as the splits see it: a cube with the area of its box. */
+BpTreeItem bp_tree_capsule_item(const BpScene *scene, uint32_t shape, const double origin[3]);
+
 /* The triangle as the splits see it, relative to `origin`: a cube with the area of its box. */
 BpTreeItem bp_tree_triangle_item(const BpScene *scene, uint32_t triangle, const double origin[3]);
 
 /* A box that contains the sphere of an item, the one that was rounded to it as well. */
 BpBounds bp_tree_item_bounds(const BpTreeItem *item);
 
-/* Fills leaf `leaf` with 0 <= count <= width spheres, and returns a box that contains them as the scene has
- * them and as the kernel will see them. */
+/* Fills leaf `leaf` with 0 <= count <= width spheres and capsules, and returns a box that contains them as
+ * the scene has them and as the kernel will see them. */
 BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
                             uint32_t count);
 

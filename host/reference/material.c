@@ -4,6 +4,7 @@
 static Vec albedo_of(const BpScene *scene, const Hit *hit) {
     const uint32_t own = hit->sphere != NULL     ? hit->sphere->albedo
                          : hit->triangle != NULL ? hit->triangle->albedo
+                         : hit->capsule != NULL  ? hit->capsule->albedo[hit->beyond]
                                                  : BP_NO_ALBEDO;
     if (own == BP_NO_ALBEDO) return bp_ref_varied(scene, hit, BP_MEMBER_ALBEDO, hit->material->albedo);
     const float *albedo = scene->albedos[own];

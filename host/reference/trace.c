@@ -10,7 +10,7 @@
 static bool starts_on(const BpScene *scene, const Ray *ray, const BpSphere *sphere) {
     const BpSphere *from = ray->leaves;
     if (from == sphere) return true;
-    if (from == NULL && (ray->scattered || ray->quits != NULL)) return false;
+    if (from == NULL && (ray->scattered || ray->quits != NULL || ray->parts != NULL)) return false;
     if (from == NULL) {
         const Vec center = bp_ref_center(scene, ray, sphere);
         const double radius = fabs(sphere->radius), distance = sqrt(length2(sub(center, ray->origin)));
@@ -77,6 +77,7 @@ static void set_triangle_hit(const BpScene *scene, const Ray *ray, const BpTrian
     hit->t = t;
     hit->sphere = NULL;
     hit->triangle = triangle;
+    hit->capsule = NULL;
     hit->material = &scene->materials[triangle->material];
     /* Back onto the plane, off which rounding has moved it. */
     hit->point = sub(point, scale(dot(sub(point, first), outward), outward));
@@ -86,14 +87,110 @@ static void set_triangle_hit(const BpScene *scene, const Ray *ray, const BpTrian
     hit->normal = bp_ref_shown_normal(scene, hit, unit(ray->direction), hit->normal);
 }
 
+static bool is_beyond(const BpCapsule *capsule, Vec point) {
+    const Vec first = vec(capsule->ends[0]), axis = sub(vec(capsule->ends[1]), first);
+    return 2 * dot(sub(point, first), axis) > length2(axis);
+}
+
+/* From the point of the axis that is closest. */
+static Vec from_axis(const BpCapsule *capsule, Vec point) {
+    const Vec first = vec(capsule->ends[0]), axis = sub(vec(capsule->ends[1]), first),
+              way = sub(point, first);
+    const double square = length2(axis);
+    const double place = square > 0 ? fmin(1, fmax(0, dot(way, axis) / square)) : 0;
+    return sub(way, scale(place, axis));
+}
+
+/* Where the ray's line is within a ball, from *from to *to; both stay where it is nowhere. Widens what is
+ * there. */
+static void widen_by_ball(const Ray *ray, Vec center, double radius, double *from, double *to) {
+    const Vec oc = sub(center, ray->origin);
+    const double a = length2(ray->direction), h = dot(ray->direction, oc) / a;
+    const double room = radius * radius - length2(sub(oc, scale(h, ray->direction)));
+    if (room < 0) return;
+    *from = fmin(*from, h - sqrt(room / a));
+    *to = fmax(*to, h + sqrt(room / a));
+}
+
+/* The same of a cylinder without ends: between its wall and the planes through the ends of its axis. */
+static void widen_by_cylinder(const Ray *ray, const BpCapsule *capsule, double *from, double *to) {
+    const Vec first = vec(capsule->ends[0]), axis = sub(vec(capsule->ends[1]), first);
+    const double length = sqrt(length2(axis));
+    if (length == 0) return;
+    const Vec up = scale(1 / length, axis), oc = sub(first, ray->origin);
+    const Vec across = cross(ray->direction, up), aside = cross(oc, up);
+    const double a = length2(across), climb = dot(ray->direction, up), height = -dot(oc, up);
+    double begin = -INFINITY, end = INFINITY;
+    if (a > 0) {
+        /* The line's distance from the axis is constant along it, so nothing large cancels. */
+        const double apart = dot(oc, cross(ray->direction, up)) / sqrt(a);
+        const double room = capsule->radius * capsule->radius - apart * apart;
+        if (room < 0) return;
+        begin = (dot(across, aside) - sqrt(room * a)) / a;
+        end = (dot(across, aside) + sqrt(room * a)) / a;
+    } else if (length2(aside) > capsule->radius * capsule->radius) {
+        return;
+    }
+    if (climb != 0) {
+        const double low = -height / climb, high = (length - height) / climb;
+        begin = fmax(begin, fmin(low, high));
+        end = fmin(end, fmax(low, high));
+    } else if (height < 0 || height > length) {
+        return;
+    }
+    if (begin > end) return;
+    *from = fmin(*from, begin);
+    *to = fmax(*to, end);
+}
+
+/* A capsule is the union of a cylinder and two balls, and convex, so where a line is in it is one stretch. A
+ * ray that starts on it ends at the other end of the stretch, if it goes inward. */
+static bool hit_capsule(const BpCapsule *capsule, const Ray *ray, double t_max, double *t) {
+    double from = INFINITY, to = -INFINITY;
+    for (int k = 0; k < 2; ++k) widen_by_ball(ray, vec(capsule->ends[k]), capsule->radius, &from, &to);
+    widen_by_cylinder(ray, capsule, &from, &to);
+    if (from > to) return false;
+    double root = from > 0 ? from : to;
+    if (ray->parts == capsule) {
+        if (dot(ray->direction, from_axis(capsule, ray->origin)) >= 0) return false;
+        root = to;
+    }
+    if (!(root > 0 && root < t_max)) return false;
+    *t = root;
+    return true;
+}
+
+static void set_capsule_hit(const BpScene *scene, const Ray *ray, const BpCapsule *capsule, double t,
+                            Hit *hit) {
+    const Vec point = add(ray->origin, scale(t, ray->direction)), away = from_axis(capsule, point);
+    const Vec outward = unit(away);
+    hit->t = t;
+    hit->sphere = NULL;
+    hit->triangle = NULL;
+    hit->capsule = capsule;
+    hit->beyond = is_beyond(capsule, point);
+    hit->material = &scene->materials[capsule->material];
+    hit->point = add(sub(point, away), scale(capsule->radius, outward));
+    hit->front_face = dot(ray->direction, outward) < 0;
+    hit->radial = outward;
+    hit->normal = hit->front_face ? outward : scale(-1, outward);
+}
+
 bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit) {
     double closest = INFINITY;
+    const BpCapsule *capsule = NULL;
     const BpSphere *sphere = NULL;
     const BpTriangle *triangle = NULL;
     for (size_t i = 0; i < scene->sphere_count; ++i)
         if (hit_sphere(scene, &scene->spheres[i], ray, closest, &closest)) sphere = &scene->spheres[i];
     for (size_t i = 0; i < scene->triangle_count; ++i)
         if (hit_triangle(&scene->triangles[i], ray, closest, &closest)) triangle = &scene->triangles[i];
+    for (size_t i = 0; i < scene->capsule_count; ++i)
+        if (hit_capsule(&scene->capsules[i], ray, closest, &closest)) capsule = &scene->capsules[i];
+    if (capsule != NULL) {
+        set_capsule_hit(scene, ray, capsule, closest, hit);
+        return true;
+    }
     if (triangle != NULL) {
         set_triangle_hit(scene, ray, triangle, closest, hit);
         return true;
@@ -103,6 +200,7 @@ bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit) {
     hit->t = closest;
     hit->sphere = sphere;
     hit->triangle = NULL;
+    hit->capsule = NULL;
     hit->material = &scene->materials[sphere->material];
     const Vec point = add(ray->origin, scale(closest, ray->direction)),
               center = bp_ref_center(scene, ray, sphere);
@@ -138,7 +236,8 @@ static Vec background(const BpScene *scene, const Ray *ray) {
     if (scene->environment != NULL) color = bp_ref_environment(scene, ray->direction);
     for (size_t i = 0; i < scene->disc_count; ++i) {
         const BpDisc *disc = &scene->discs[i];
-        const bool from_camera = ray->leaves == NULL && ray->quits == NULL && !ray->scattered;
+        const bool from_camera =
+            ray->leaves == NULL && ray->quits == NULL && ray->parts == NULL && !ray->scattered;
         if ((disc->visible_to_camera || !from_camera) && in_disc(disc, ray->direction))
             color = add(color, vec(disc->radiance));
     }
@@ -258,7 +357,7 @@ Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *r
     Vec direction, attenuation;
     if (!bp_ref_scatter(scene, ray, &hit, random, &direction, &attenuation)) return mul(left, emitted);
     direction = bp_ref_folded(&hit, direction);
-    const Ray scattered = {hit.point, direction, hit.sphere, ray->time, false, hit.triangle};
+    const Ray scattered = {hit.point, direction, hit.sphere, ray->time, false, hit.triangle, hit.capsule};
     const Vec onward = mul(attenuation, bp_ref_color(scene, &scattered, depth - 1, random, path));
     return mul(left, add(emitted, onward));
 }

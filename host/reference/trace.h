@@ -14,6 +14,7 @@ typedef struct Ray {
     double time;             /* 0 when the shutter opens, 1 when it closes */
     bool scattered;          /* it begins where a medium scattered it */
     const BpTriangle *quits; /* the triangle that the origin lies on, or NULL */
+    const BpCapsule *parts;  /* the capsule that it lies on, or NULL */
 } Ray;
 
 typedef struct Hit {
@@ -24,6 +25,8 @@ typedef struct Hit {
     bool front_face;        /* the ray comes from the side that the outward normal points to */
     const BpSphere *sphere; /* or NULL */
     const BpTriangle *triangle; /* or NULL */
+    const BpCapsule *capsule;   /* or NULL */
+    bool beyond;                /* of a capsule: its second end is the closer one */
     const BpMaterial *material;
 } Hit;
 
@@ -46,7 +49,8 @@ Camera bp_ref_camera(const BpCamera *camera);
 /* `height`: where the ray stands in the picture, from 0 at its lower edge to 1 at the upper. */
 Ray bp_ref_camera_ray(const Camera *camera, uint32_t column, uint32_t row, Random *random, double *height);
 
-/* The nearest hit with t > 0; of equal ones spheres before triangles, and what stands first. */
+/* The nearest hit with t > 0; of equal ones spheres before triangles, these before capsules, and what stands
+ * first. */
 bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit);
 
 /* The normal that a smooth triangle shows to a ray from `incoming`, a unit direction, at a point of it, where

@@ -125,7 +125,8 @@ static Spread first_spread(const BpPilot *pilot) {
 static void spread_at(const BpScene *scene, const BpPilotSegment *segment, const BpPilotSegment *next,
                       const double normal[3], Spread *spread) {
     if (bp_pilot_is_triangle(scene, segment->shape)) return;
-    const double radius = fabs(scene->spheres[segment->shape].radius);
+    const BpCapsule *const capsule = bp_shape_capsule(scene, segment->shape);
+    const double radius = capsule != NULL ? capsule->radius : fabs(scene->spheres[segment->shape].radius);
     const double cosine = fmax(fabs(bp_dot(segment->direction, normal)), 0.2);
     const bool reflected = bp_dot(next->direction, normal) > 0;
     spread->slope += spread->width / (radius * cosine) * (reflected ? 2 : 0.5);

@@ -14,7 +14,7 @@
 #define PI 3.14159265358979323846
 /* Cosines of grazing light are no smaller, so that no single path outweighs all others. */
 #define COSINE_MIN 0.02
-/* The cosine between the normals of two triangles whose points count as neighbours, at least. */
+/* The cosine between the normals of two triangles or capsules whose points count as neighbours, at least. */
 #define ALIKE 0.8
 
 void bp_pilot_add(BpPilotSums *sums, size_t pixel, const double radiance[3], double probability,
@@ -148,7 +148,7 @@ static void join_one(const BpScene *scene, const BpPilotEye *eye, const BpPilotP
     const double cosine = bp_dot(back, eye->normal);
     if (away2 > eye->radius * eye->radius || cosine <= 0 || eye->segments + photon->segments > max_depth)
         return;
-    if (bp_pilot_is_triangle(scene, eye->shape) && bp_dot(eye->normal, photon->normal) < ALIKE) return;
+    if (!bp_pilot_is_sphere(scene, eye->shape) && bp_dot(eye->normal, photon->normal) < ALIKE) return;
     const BpMaterial *material = bp_pilot_material(scene, eye->shape);
     const double density = bp_pilot_density(material, eye->axis, back) / fmax(cosine, COSINE_MIN);
     const double probability = density * photon->measure / (PI * eye->radius * eye->radius);

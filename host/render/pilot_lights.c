@@ -115,8 +115,8 @@ static void add_texels(const BpScene *scene, size_t room, BpPilotAim *aim) {
 /* ---- lamps: spheres and triangles that rays are sent to ---- */
 
 static bool is_lamp(const BpScene *scene, size_t shape, size_t enclosing) {
-    return bp_pilot_is_triangle(scene, shape) ? bp_luminance_of(bp_pilot_material(scene, shape)->emit) > 0
-                                              : bp_sphere_is_sampled(scene, shape, enclosing);
+    return bp_pilot_is_sphere(scene, shape) ? bp_sphere_is_sampled(scene, shape, enclosing)
+                                            : bp_luminance_of(bp_pilot_material(scene, shape)->emit) > 0;
 }
 
 static double radius_of(const BpScene *scene, size_t shape) {
@@ -252,7 +252,7 @@ static BpStatus make_pairs(const BpScene *scene, BpPilotAim *aim, BpError *err) 
 }
 
 bool bp_pilot_is_sampled(const BpScene *scene, const BpPilotLight *light, uint32_t shape, uint32_t vertices) {
-    if (bp_pilot_is_triangle(scene, shape) || vertices > bp_focuser_vertices(scene, shape)) return false;
+    if (!bp_pilot_is_sphere(scene, shape) || vertices > bp_focuser_vertices(scene, shape)) return false;
     if (light->distant) return light->disc != SIZE_MAX && bp_focuses_disc(scene, shape, light->disc);
     return !bp_pilot_is_triangle(scene, light->shape) && bp_focuses_lamp(scene, shape, light->shape);
 }

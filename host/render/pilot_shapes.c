@@ -22,6 +22,11 @@ static double ball_of_triangle(const BpTriangle *triangle, double center[3]) {
 double bp_pilot_ball(const BpScene *scene, size_t shape, double center[3]) {
     const BpTriangle *const triangle = bp_pilot_triangle(scene, shape);
     if (triangle != NULL) return ball_of_triangle(triangle, center);
+    const BpCapsule *const capsule = bp_shape_capsule(scene, shape);
+    if (capsule != NULL) {
+        for (int a = 0; a < 3; ++a) center[a] = 0.5 * (capsule->ends[0][a] + capsule->ends[1][a]);
+        return capsule->radius + 0.5 * sqrt(bp_distance2(capsule->ends[0], capsule->ends[1]));
+    }
     const double *from = scene->spheres[shape].center, *to = bp_sphere_end(scene, shape);
     double way = 0;
     for (int a = 0; a < 3; ++a) {
@@ -31,11 +36,27 @@ double bp_pilot_ball(const BpScene *scene, size_t shape, double center[3]) {
     return fabs(scene->spheres[shape].radius) + 0.5 * sqrt(way);
 }
 
+/* From the point of the axis that is closest. */
+static void outward_of_capsule(const BpCapsule *capsule, const double point[3], double normal[3]) {
+    double axis[3], way[3];
+    bp_way(capsule->ends[0], capsule->ends[1], axis);
+    bp_way(capsule->ends[0], point, way);
+    const double length2 = bp_dot(axis, axis);
+    const double place = length2 > 0 ? fmin(1, fmax(0, bp_dot(way, axis) / length2)) : 0;
+    for (int a = 0; a < 3; ++a) normal[a] = way[a] - place * axis[a];
+    bp_normalize(normal);
+}
+
 void bp_pilot_outward(const BpScene *scene, size_t shape, const double point[3], double time,
                       double normal[3]) {
     const BpTriangle *const triangle = bp_pilot_triangle(scene, shape);
     if (triangle != NULL) {
         bp_pilot_area(triangle, normal);
+        return;
+    }
+    const BpCapsule *const capsule = bp_shape_capsule(scene, shape);
+    if (capsule != NULL) {
+        outward_of_capsule(capsule, point, normal);
         return;
     }
     const double *from = scene->spheres[shape].center, *to = bp_sphere_end(scene, shape);
@@ -44,8 +65,8 @@ void bp_pilot_outward(const BpScene *scene, size_t shape, const double point[3],
 }
 
 double bp_pilot_index_inside(const BpScene *scene, size_t shape) {
-    return bp_pilot_is_triangle(scene, shape) ? bp_pilot_material(scene, shape)->refraction_index
-                                              : bp_sphere_refraction_index(scene, shape);
+    return bp_pilot_is_sphere(scene, shape) ? bp_sphere_refraction_index(scene, shape)
+                                            : bp_pilot_material(scene, shape)->refraction_index;
 }
 
 bool bp_pilot_is_specular(const BpScene *scene, size_t shape) {

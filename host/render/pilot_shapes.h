@@ -1,6 +1,6 @@
-/* pilot_shapes.h: what a pilot asks of a scene's shapes, be they spheres or triangles.
+/* pilot_shapes.h: what a pilot asks of a scene's shapes, be they spheres, triangles or capsules.
  *
- * In:    a shape, as the scene counts them: spheres first, then triangles.
+ * In:    a shape, as the scene counts them: spheres first, then triangles, then capsules, which do not emit.
  * Out:   its material, its normal, a ball around it.
  * Knows: geometry, which materials scatter into few directions.   Does not know: how paths are traced. */
 #ifndef BP_RENDER_PILOT_SHAPES_H
@@ -8,10 +8,13 @@
 
 #include "scene/scene.h"
 
-static inline bool bp_pilot_is_triangle(const BpScene *scene, size_t shape) {
-    return shape >= scene->sphere_count;
+static inline bool bp_pilot_is_sphere(const BpScene *scene, size_t shape) {
+    return shape < scene->sphere_count;
 }
-/* NULL: it is a sphere. */
+static inline bool bp_pilot_is_triangle(const BpScene *scene, size_t shape) {
+    return !bp_pilot_is_sphere(scene, shape) && bp_shape_capsule(scene, shape) == NULL;
+}
+/* NULL: it is another shape. */
 static inline const BpTriangle *bp_pilot_triangle(const BpScene *scene, size_t shape) {
     return bp_pilot_is_triangle(scene, shape) ? &scene->triangles[shape - scene->sphere_count] : NULL;
 }
@@ -36,13 +39,13 @@ double bp_pilot_index_inside(const BpScene *scene, size_t shape);
 /* The shape scatters into few directions only, so that no ray to a lamp lights it. */
 bool bp_pilot_is_specular(const BpScene *scene, size_t shape);
 
-/* Whose points count as neighbours: a sphere is its own, and all triangles are one. */
+/* Whose points count as neighbours: a sphere is its own, and all other shapes are one. */
 static inline uint32_t bp_pilot_object(const BpScene *scene, uint32_t shape) {
-    return bp_pilot_is_triangle(scene, shape) ? (uint32_t)scene->sphere_count : shape;
+    return bp_pilot_is_sphere(scene, shape) ? shape : (uint32_t)scene->sphere_count;
 }
 
-/* By way of what light comes, as a place in a table: each sphere, then nothing at all, then the triangles of
- * each material. */
+/* By way of what light comes, as a place in a table: each sphere, then nothing at all, then the other shapes
+ * of each material. */
 static inline size_t bp_pilot_ways(const BpScene *scene) {
     return scene->sphere_count + 1 + scene->material_count;
 }
@@ -50,8 +53,8 @@ static inline size_t bp_pilot_way_direct(const BpScene *scene) {
     return scene->sphere_count;
 }
 static inline size_t bp_pilot_way(const BpScene *scene, size_t shape) {
-    return bp_pilot_is_triangle(scene, shape) ? scene->sphere_count + 1 + bp_shape_material(scene, shape)
-                                              : shape;
+    return bp_pilot_is_sphere(scene, shape) ? shape
+                                            : scene->sphere_count + 1 + bp_shape_material(scene, shape);
 }
 
 #endif

@@ -68,7 +68,7 @@ static uint32_t choose_effects(const BpEffects *effects, const BpRenderOptions *
  * are sent by it to what is not a triangle. */
 static bool needs_spheres(uint32_t effects) {
     const uint32_t others = 1u << BP_EFFECT_DISCS | 1u << BP_EFFECT_ENVIRONMENT | 1u << BP_EFFECT_CAUSTICS;
-    return bp_effects_has(effects, BP_EFFECT_MEDIA) ||
+    return bp_effects_has(effects, BP_EFFECT_MEDIA) || bp_effects_has(effects, BP_EFFECT_CAPSULES) ||
            (bp_effects_has(effects, BP_EFFECT_LAMPS) &&
             (!bp_effects_has(effects, BP_EFFECT_TRIANGLE_LAMPS) || (effects & others) != 0));
 }
@@ -114,6 +114,7 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
         .list = !setup->program.tree,
         .threads = options->threads,
         .motions = bp_effects_has(setup->program.effects, BP_EFFECT_MOTION),
+        .axes = bp_effects_has(setup->program.effects, BP_EFFECT_CAPSULES),
     };
     BP_TRY(bp_scene_pack(scene, &tree_options, bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS),
                          caustics == BP_CAUSTICS_ON, packed, err));

@@ -148,6 +148,7 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, BpPacked *given, const BpWor
     made->has_triangles = bp_effects_has(setup->program.effects, BP_EFFECT_TRIANGLES);
     made->has_normals =
         made->has_triangles && bp_effects_has(setup->program.effects, BP_EFFECT_SMOOTH_NORMALS);
+    made->has_capsules = bp_effects_has(setup->program.effects, BP_EFFECT_CAPSULES);
     BpStatus status = BP_OK;
     made->device = setup->device;
     made->owns_device = setup->device == NULL;

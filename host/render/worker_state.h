@@ -48,9 +48,10 @@ enum {
     BP_SCENE_ARRAYS = SCENE_ARRAYS_OF_PACK(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_FOCUSERS(BP_COUNT_ARRAY)
         SCENE_ARRAYS_OF_SLOTS(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_LAMPS(BP_COUNT_ARRAY)
             SCENE_ARRAYS_OF_TREE(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_TRIANGLES(BP_COUNT_ARRAY)
-                SCENE_ARRAYS_OF_NORMALS(BP_COUNT_ARRAY),
-    BP_TRIANGLE_ARRAYS = 0 SCENE_ARRAYS_OF_TRIANGLES(BP_COUNT_ARRAY),
-    BP_NORMAL_ARRAYS = 0 SCENE_ARRAYS_OF_NORMALS(BP_COUNT_ARRAY), /* the last, after those */
+                SCENE_ARRAYS_OF_NORMALS(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_CAPSULES(BP_COUNT_ARRAY),
+    BP_NORMAL_ARRAYS = 0 SCENE_ARRAYS_OF_NORMALS(BP_COUNT_ARRAY),     /* the last */
+    BP_TRIANGLE_ARRAYS = 0 SCENE_ARRAYS_OF_TRIANGLES(BP_COUNT_ARRAY), /* before them */
+    BP_CAPSULE_ARRAYS = 0 SCENE_ARRAYS_OF_CAPSULES(BP_COUNT_ARRAY),   /* before those */
     BP_SCENE_BUFFERS_MAX = BP_SCENE_ARRAYS * SCENE_PARTS_MAX
 };
 
@@ -69,6 +70,7 @@ typedef struct BpWorker {
     bool has_lamps;
     bool has_triangles; /* the kernel knows them, and is given their arrays and numbers */
     bool has_normals;   /* the same of the normals at their vertices */
+    bool has_capsules;  /* the same of their arrays */
     cl_mem pixel_list;  /* NULL: chunks are ranges of pixels */
     size_t real_size;
     uint32_t SCENE_NUMBERS(BP_SCENE_NUMBER_MEMBER) first_triangles, normal_leaves, coloured_slots, pixels;

@@ -93,12 +93,22 @@ static BpSphere ball_of_triangle(const BpTriangle *triangle) {
     return ball;
 }
 
+static BpSphere ball_of_capsule(const BpCapsule *capsule) {
+    BpSphere ball = {.radius = capsule->radius + sqrt(bp_distance2(capsule->ends[0], capsule->ends[1])) / 2};
+    for (int i = 0; i < 3; i++) ball.center[i] = (capsule->ends[0][i] + capsule->ends[1][i]) / 2;
+    return ball;
+}
+
 bool bp_scene_has_shape_in_view(const BpScene *scene) {
     const View view = find_view(&scene->camera);
     for (size_t i = 0; i < scene->sphere_count; i++)
         if (reaches_view(&view, &scene->spheres[i], bp_sphere_end(scene, i))) return true;
     for (size_t i = 0; i < scene->triangle_count; i++) {
         const BpSphere ball = ball_of_triangle(&scene->triangles[i]);
+        if (reaches_view(&view, &ball, ball.center)) return true;
+    }
+    for (size_t i = 0; i < scene->capsule_count; i++) {
+        const BpSphere ball = ball_of_capsule(&scene->capsules[i]);
         if (reaches_view(&view, &ball, ball.center)) return true;
     }
     return false;

@@ -88,6 +88,12 @@ double bp_camera_origin(const BpScene *scene, double origin[3]) {
                 distance += ahead[i] * (scene->triangles[t].vertices[k][i] - origin[i]);
             nearest = fmin(nearest, distance);
         }
+    for (size_t c = 0; c < scene->capsule_count; c++)
+        for (int k = 0; k < 2; k++) {
+            double distance = -scene->capsules[c].radius;
+            for (int i = 0; i < 3; i++) distance += ahead[i] * (scene->capsules[c].ends[k][i] - origin[i]);
+            nearest = fmin(nearest, distance);
+        }
     const double moved = isfinite(nearest) ? nearest - bp_camera_plane_height(camera) : 0;
     if (!(moved > 0)) return 0;
     for (int i = 0; i < 3; i++) origin[i] += moved * ahead[i];
@@ -165,6 +171,7 @@ void bp_scene_destroy(BpScene **scene) {
     free(s->spheres);
     free(s->triangles);
     free(s->normals);
+    free(s->capsules);
     free(s->center_ends);
     free(s->interiors);
     for (size_t i = 0; i < s->medium_count; i++) free(s->media[i].name);
@@ -249,6 +256,19 @@ BpStatus bp_scene_make_normals(BpScene *scene, size_t count, BpError *err) {
     return BP_OK;
 }
 
+const char *bp_capsule_name(const BpScene *scene, size_t capsule, char text[BP_SPHERE_NAME_SIZE]) {
+    (void)scene;
+    snprintf(text, BP_SPHERE_NAME_SIZE, "capsules[%zu]", capsule);
+    return text;
+}
+
+const char *bp_shape_name(const BpScene *scene, size_t shape, char text[BP_SPHERE_NAME_SIZE]) {
+    const size_t others = scene->sphere_count + scene->triangle_count;
+    if (shape < scene->sphere_count) return bp_sphere_name(scene, shape, text);
+    if (shape < others) return bp_triangle_name(scene, shape - scene->sphere_count, text);
+    return bp_capsule_name(scene, shape - others, text);
+}
+
 size_t bp_scene_emitting_triangles(const BpScene *scene) {
     size_t count = 0;
     for (size_t t = 0; t < scene->triangle_count; t++)
@@ -257,8 +277,10 @@ size_t bp_scene_emitting_triangles(const BpScene *scene) {
 }
 
 const char *bp_scene_noun(const BpScene *scene) {
-    if (scene->triangle_count == 0) return "sphere";
-    return scene->sphere_count == 0 ? "triangle" : "shape";
+    const size_t all = bp_scene_shapes(scene);
+    if (scene->sphere_count == all) return "sphere";
+    if (scene->triangle_count == all) return "triangle";
+    return scene->capsule_count == all ? "capsule" : "shape";
 }
 
 BpStatus bp_scene_set_width(BpScene *scene, uint32_t width, BpError *err) {
@@ -285,7 +307,8 @@ void bp_scene_info(const BpScene *scene, BpSceneInfo *info) {
                           .spheres = scene->sphere_count,
                           .materials = scene->material_count,
                           .transfer = scene->transfer,
-                          .triangles = scene->triangle_count};
+                          .triangles = scene->triangle_count,
+                          .capsules = scene->capsule_count};
 }
 
 void bp_scene_camera(const BpScene *scene, BpCameraInfo *info) {

@@ -10,7 +10,7 @@
  * degrees; centers when the shutter closes like those when it opens; 0 < vfov < 180, and the size of the
  * plane in focus fits a float; lookfrom != lookat; vup not parallel to the view; 1 <= width, height <=
  * BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole camera on the surface of at most one sphere;
- * of triangles what triangle_rules.h lists.
+ * of triangles what triangle_rules.h lists, and of capsules what capsule_rules.h does.
  */
 #ifndef BP_SCENE_SCENE_H
 #define BP_SCENE_SCENE_H
@@ -25,10 +25,13 @@
 
 #define BP_PICTURE_SIDE_MAX 65535u
 #define BP_DEPTH_MAX 1000000u
-#define BP_SPHERES_MAX 134217728u     /* 2^27 */
-#define BP_COORDINATE_MAX 1.0e12      /* |centre|, |radius|, |lookfrom|: squares stay finite in float */
-#define BP_VERTEX_MAX 1.0e9           /* of triangles: products of four lengths stay finite in float */
-#define BP_TRIANGLE_SIDE_MIN 1.0e-9   /* and those of their longest sides normal */
+#define BP_SPHERES_MAX 134217728u   /* 2^27 */
+#define BP_COORDINATE_MAX 1.0e12    /* |centre|, |radius|, |lookfrom|: squares stay finite in float */
+#define BP_VERTEX_MAX 1.0e9         /* of triangles: products of four lengths stay finite in float */
+#define BP_TRIANGLE_SIDE_MIN 1.0e-9 /* and those of their longest sides normal */
+#define BP_CAPSULE_RADIUS_MIN 1.0e-12
+#define BP_CAPSULE_LENGTH_MIN                                                                                \
+    1.0e-15 /* a shorter capsule is a sphere: the square of its length stays normal in float */
 #define BP_REFRACTION_INDEX_MAX 1.0e6 /* and at least its reciprocal */
 #define BP_FOCUS_DIST_MIN 1.0e-15     /* rays begin as vectors of this length: squares stay normal in float */
 #define BP_HALF_HEIGHT_MAX 1.0e14     /* of the plane in focus; it is up to 65,535 times as wide */
@@ -71,6 +74,14 @@ typedef struct BpTriangle {
     uint32_t material; /* into materials[] */
     uint32_t albedo;   /* as of a sphere */
 } BpTriangle;
+
+/* All points within the radius of the line between its ends. */
+typedef struct BpCapsule {
+    double ends[2][3];
+    double radius;      /* > 0 */
+    uint32_t material;  /* into materials[] */
+    uint32_t albedo[2]; /* of the halves by its ends; as of a sphere, both or none */
+} BpCapsule;
 
 #define BP_QUAD_TRIANGLES 2u
 #define BP_BOX_TRIANGLES 12u
@@ -200,6 +211,9 @@ struct BpScene {
     float (*normals)[3][3]; /* of the first normal_count triangles: at the vertices, of unit length, on either
                                side; all 0: the triangle is flat */
     size_t normal_count;
+    BpCapsule *capsules;
+    size_t capsule_count,
+        listed_capsules;     /* those that are not listed come from "particles", or are lines of a caller */
     BpShapeFile *mesh_files; /* in the order of their triangles */
     size_t mesh_file_count;
     float (*albedos)[3]; /* linear, in [0,1]; of points and triangles that bring their own colour */
@@ -257,21 +271,32 @@ const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPH
  * (from 0) of bunny.ply", counted without those that were left out. */
 const char *bp_triangle_name(const BpScene *scene, size_t triangle, char text[BP_SPHERE_NAME_SIZE]);
 
+/* The same of a capsule, and of any shape. */
+const char *bp_capsule_name(const BpScene *scene, size_t capsule, char text[BP_SPHERE_NAME_SIZE]);
+const char *bp_shape_name(const BpScene *scene, size_t shape, char text[BP_SPHERE_NAME_SIZE]);
+
 /* The triangles that stand in the scene itself; those of meshes follow. */
 size_t bp_scene_listed_triangles(const BpScene *scene);
 
-/* Shapes are the spheres, then the triangles: how many, the material of one, into materials[], its own
- * albedo, into albedos[], or BP_NO_ALBEDO, and whether it emits. */
+/* Shapes are the spheres, then the triangles, then the capsules: how many, one of them, or NULL where the
+ * shape is another, the material of one, into materials[], its own albedo, into albedos[], or
+ * BP_NO_ALBEDO, of a capsule that of its first half, and whether it emits. */
 static inline size_t bp_scene_shapes(const BpScene *scene) {
-    return scene->sphere_count + scene->triangle_count;
+    return scene->sphere_count + scene->triangle_count + scene->capsule_count;
+}
+static inline const BpCapsule *bp_shape_capsule(const BpScene *scene, size_t shape) {
+    const size_t others = scene->sphere_count + scene->triangle_count;
+    return shape >= others ? &scene->capsules[shape - others] : NULL;
 }
 static inline uint32_t bp_shape_material(const BpScene *scene, size_t shape) {
-    return shape < scene->sphere_count ? scene->spheres[shape].material
-                                       : scene->triangles[shape - scene->sphere_count].material;
+    if (shape < scene->sphere_count) return scene->spheres[shape].material;
+    const BpCapsule *const capsule = bp_shape_capsule(scene, shape);
+    return capsule != NULL ? capsule->material : scene->triangles[shape - scene->sphere_count].material;
 }
 static inline uint32_t bp_shape_albedo(const BpScene *scene, size_t shape) {
-    return shape < scene->sphere_count ? scene->spheres[shape].albedo
-                                       : scene->triangles[shape - scene->sphere_count].albedo;
+    if (shape < scene->sphere_count) return scene->spheres[shape].albedo;
+    const BpCapsule *const capsule = bp_shape_capsule(scene, shape);
+    return capsule != NULL ? capsule->albedo[0] : scene->triangles[shape - scene->sphere_count].albedo;
 }
 static inline bool bp_shape_emits(const BpScene *scene, size_t shape) {
     const double *emit = scene->materials[bp_shape_material(scene, shape)].emit;
@@ -288,7 +313,7 @@ static inline const float (*bp_triangle_normals(const BpScene *scene, size_t tri
 /* Makes room for the normals of `count` triangles in all; those that are new are 0. BP_ERR_MEMORY. */
 BpStatus bp_scene_make_normals(BpScene *scene, size_t count, BpError *err);
 
-/* "sphere", "triangle", or "shape" where there are both. */
+/* "sphere", "triangle", "capsule", or "shape" where there are several kinds. */
 const char *bp_scene_noun(const BpScene *scene);
 
 /* How many triangles emit. */

@@ -22,6 +22,7 @@ typedef enum BpFaultSubject {
     BP_FAULT_MATERIAL,  /* index: into materials[] */
     BP_FAULT_SPHERE,    /* index: into spheres[] */
     BP_FAULT_TRIANGLE,  /* index: into triangles[] */
+    BP_FAULT_CAPSULE,   /* index: into capsules[] */
     BP_FAULT_ALBEDO,    /* index: into albedos[] */
     BP_FAULT_COINCIDENT /* index, other: spheres; other < index */
 } BpFaultSubject;

@@ -1,5 +1,6 @@
 /* scene_validate.c: see scene_fault.h, and bp_scene_validate in scene.h. */
 #include "base/message_text.h"
+#include "capsule_rules.h"
 #include "material.h"
 #include "scene_fault.h"
 #include "scene_side.h"
@@ -327,7 +328,8 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
     }
     BP_TRY(bp_scene_find_coincident(scene, fault, err));
     if (fault->subject == BP_FAULT_NONE) standpoint_fault(scene, fault);
-    return fault->subject == BP_FAULT_NONE ? bp_scene_find_triangle_fault(scene, fault, err) : BP_OK;
+    if (fault->subject == BP_FAULT_NONE) BP_TRY(bp_scene_find_triangle_fault(scene, fault, err));
+    return fault->subject == BP_FAULT_NONE ? bp_scene_find_capsule_fault(scene, fault, err) : BP_OK;
 }
 
 BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {
@@ -365,6 +367,9 @@ BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {
         return bp_fail(err, BP_ERR_SCENE, "spheres[%zu].%s: %s", fault.index, fault.member, fault.text);
     case BP_FAULT_TRIANGLE:
         return bp_fail(err, BP_ERR_SCENE, "%s%s%s: %s", bp_triangle_name(scene, fault.index, name),
+                       fault.member[0] != '\0' ? "." : "", fault.member, fault.text);
+    case BP_FAULT_CAPSULE:
+        return bp_fail(err, BP_ERR_SCENE, "%s%s%s: %s", bp_capsule_name(scene, fault.index, name),
                        fault.member[0] != '\0' ? "." : "", fault.member, fault.text);
     case BP_FAULT_ALBEDO:
         return bp_fail(err, BP_ERR_SCENE, "albedo %zu: %s", fault.index, fault.text);

@@ -1,4 +1,4 @@
-/* geometry.cl: the spheres and triangles of the scene and the tree above them, as packed tables.
+/* geometry.cl: the spheres, triangles and capsules of the scene and the tree above them, as packed tables.
  *
  * Knows: scene_types.h, parts.cl.   Does not know: rays, materials. */
 
@@ -20,6 +20,15 @@
 #define WITH_SHEAR(shear)
 #endif
 
+/* The same of capsules. */
+#if EFFECT_CAPSULES
+#define CAPSULES_PARAMETERS SCENE_ARRAYS_OF_CAPSULES(SPLIT_PARAMETER)
+#define CAPSULES_ARGUMENTS SCENE_ARRAYS_OF_CAPSULES(SPLIT_ARGUMENT)
+#else
+#define CAPSULES_PARAMETERS
+#define CAPSULES_ARGUMENTS
+#endif
+
 typedef struct Geometry {
     SCENE_ARRAYS_OF_TREE(SPLIT_MEMBER)
     uint first_leaves; /* the leaves of spheres so large that most rays meet them; without a tree, all */
@@ -32,12 +41,15 @@ typedef struct Geometry {
     SCENE_ARRAYS_OF_NORMALS(SPLIT_MEMBER)
     uint normal_leaves; /* 0: no triangle is smooth */
 #endif
+#if EFFECT_CAPSULES
+    SCENE_ARRAYS_OF_CAPSULES(SPLIT_MEMBER)
+#endif
 #ifdef FLAT_GROUPS_MAX
     FlatTree flat;
 #endif
 } Geometry;
 
-static void geometry_init(SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) TRIANGLES_PARAMETERS uint first_leaves, uint leaf_count,
+static void geometry_init(SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) CAPSULES_PARAMETERS TRIANGLES_PARAMETERS uint first_leaves, uint leaf_count,
                           Geometry *geometry) {
 #define SET_ARRAY(numbers, element, name, count, what) SET_SPLIT(geometry, name)
     SCENE_ARRAYS_OF_TREE(SET_ARRAY)
@@ -48,6 +60,9 @@ static void geometry_init(SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) TRIANGLES_PARAME
 #if SMOOTH_TRIANGLES
     SCENE_ARRAYS_OF_NORMALS(SET_ARRAY)
     geometry->normal_leaves = normal_leaves;
+#endif
+#if EFFECT_CAPSULES
+    SCENE_ARRAYS_OF_CAPSULES(SET_ARRAY)
 #endif
 #undef SET_ARRAY
     geometry->first_leaves = first_leaves;

@@ -14,6 +14,7 @@
 #define intersect_sphere LANED(intersect_sphere)
 #define intersect_own_sphere LANED(intersect_own_sphere)
 #define is_triangle LANED(is_triangle)
+#define other_colour LANED(other_colour)
 #define load_triangle LANED(load_triangle)
 #define load_normals LANED(load_normals)
 #define load_triangle_if LANED(load_triangle_if)
@@ -70,8 +71,24 @@ static Sphere load_sphere(const Geometry *geometry, vuint slot) {
                          gather_split_real(geometry->leaves, TREE_WIDTH, place),
                          gather_split_real(geometry->leaves, 2 * TREE_WIDTH, place));
     sphere.radius = gather_split_real(geometry->leaves, 3 * TREE_WIDTH, place);
+#if EFFECT_CAPSULES
+    const vuint axis = (slot - lane) * 6u + lane;
+    sphere.axis = vec3(gather_split_real(geometry->leaf_axes, 0, axis), gather_split_real(geometry->leaf_axes, TREE_WIDTH, axis),
+                       gather_split_real(geometry->leaf_axes, 2 * TREE_WIDTH, axis));
+#endif
     return sphere;
 }
+
+#if EFFECT_CAPSULES
+/* The colour of a capsule's half by its other end. */
+static Vec3 other_colour(const Geometry *geometry, vuint slot) {
+    const vuint lane = slot % TREE_WIDTH;
+    const vuint place = (slot - lane) * 6u + lane;
+    return vec3(gather_split_real(geometry->leaf_axes, 3 * TREE_WIDTH, place),
+                gather_split_real(geometry->leaf_axes, 4 * TREE_WIDTH, place),
+                gather_split_real(geometry->leaf_axes, 5 * TREE_WIDTH, place));
+}
+#endif
 
 #if EFFECT_MOTION
 /* Where the centre of the sphere in a slot is at a time, from where it is when the shutter opens. */
@@ -85,11 +102,15 @@ static Vec3 centre_at(const Geometry *geometry, vuint slot, vreal time, Vec3 fir
 }
 #endif
 
-/* The sphere in a slot where a ray meets it: one that moves stands where it is at the ray's time. */
+/* The sphere in a slot where a ray meets it: one that moves stands where it is at the ray's time, and of a capsule it is the
+ * ball on its axis. */
 static Sphere sphere_for_ray(const Geometry *geometry, const Ray *ray, vuint slot) {
     Sphere sphere = load_sphere(geometry, slot);
 #if EFFECT_MOTION
     sphere.centre = centre_at(geometry, slot, ray->time, sphere.centre);
+#endif
+#if EFFECT_CAPSULES
+    choose_ball(ray, vbool_of_uint(slot == ray->own_slot), &sphere);
 #endif
     return sphere;
 }
@@ -158,7 +179,15 @@ static void intersect_triangle_beside_sphere(const Geometry *geometry, const Ray
                                              const Triangle *triangle, vuint slot, Hit *hit) {
     vrefined t;
     vbool enters;
+#if EFFECT_CAPSULES
+    Sphere left = load_sphere(geometry, choose_uint(doubtful, ray->own_slot, splat_uint(0)));
+#if EFFECT_MOTION
+    left.centre = centre_at(geometry, choose_uint(doubtful, ray->own_slot, splat_uint(0)), ray->time, left.centre);
+#endif
+    ball_at_origin(ray, &left);
+#else
     const Sphere left = sphere_for_ray(geometry, ray, choose_uint(doubtful, ray->own_slot, splat_uint(0)));
+#endif
     const vbool found = triangle_beside_sphere(ray, shear, triangle, left.centre, left.radius, &t, &enters) & doubtful;
     keep_closer(geometry, found, t, slot, enters, hit);
 }

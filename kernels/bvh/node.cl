@@ -105,7 +105,13 @@ FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const R
     sphere.centre.z = fma(ray.time, row_of(motion, 2 * TREE_WIDTH), sphere.centre.z);
 #endif
     /* An empty lane has its centre at NaN, so no comparison holds. */
+#if EFFECT_CAPSULES
+    __global const real *axes = place_in(geometry->leaf_axes, leaf_number * (6 * TREE_WIDTH));
+    sphere.axis = vec3(row_of(axes, 0), row_of(axes, TREE_WIDTH), row_of(axes, 2 * TREE_WIDTH));
+    child_mask mask = lane_bits(capsule_is_candidate(&ray, splat(bound), &sphere));
+#else
     child_mask mask = lane_bits(sphere_is_candidate(&ray, splat(bound), &sphere));
+#endif
 #ifdef __FAST_RELAXED_MATH__
     mask &= lane_bits(sphere.radius > splat(0)); /* here a compiler may take a NaN for a number */
 #endif

@@ -600,11 +600,20 @@ static void intersect_leaf(const Geometry *geometry, const Ray *ray, WITH_SHEAR(
 #if SAMPLES_LAMPS
         wanted = wanted & vbool_of_uint(hit->slot != slot);
 #endif
+#if EFFECT_CAPSULES
+        __global const real *axes = place_in(geometry->leaf_axes, leaf_number * (6 * TREE_WIDTH)) + lane;
+        sphere.axis = vec3(splat(axes[0]), splat(axes[TREE_WIDTH]), splat(axes[2 * TREE_WIDTH]));
+        vbool candidate = capsule_is_candidate(ray, hit->bound, &sphere);
+#else
         vbool candidate = sphere_is_candidate(ray, hit->bound, &sphere);
+#endif
 #if !OWN_SHAPE_IS_MET
         candidate = candidate & vbool_of_uint(ray->own_slot != slot);
 #endif
         candidate = candidate & wanted;
+#if EFFECT_CAPSULES
+        if (any_lane(candidate)) choose_ball(ray, vbool_none, &sphere);
+#endif
         if (any_lane(candidate)) intersect_sphere(geometry, ray, candidate, &sphere, slot, hit);
     }
 #endif

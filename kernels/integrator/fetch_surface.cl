@@ -23,6 +23,12 @@ static void fetch_surface(const Scene *scene, const Ray *ray, const Hit *hit, WI
     const vuint kinds = material * MATERIAL_UINTS;
     surface->albedo = vec3(gather_split_real(scene->slot_albedo, 0, colour), gather_split_real(scene->slot_albedo, 1u, colour),
                            gather_split_real(scene->slot_albedo, 2u, colour));
+#if EFFECT_CAPSULES
+    if (any_lane(sphere->beyond)) {
+        const vuint capsule = choose_uint(sphere->beyond, slot, splat_uint(0));
+        surface->albedo = choose3(sphere->beyond, other_colour(&scene->geometry, capsule), surface->albedo);
+    }
+#endif
     surface->kind = gather_uint(scene->material_kinds, kinds);
     *emitted = zero3();
 #if SMOOTH_TRIANGLES

@@ -256,6 +256,9 @@ static LampChoice choose_light(const Scene *scene, const Path *path, vuint bounc
     choice.slot = splat_uint(0);
     choice.sphere.centre = zero3();
     choice.sphere.radius = splat(0);
+#if EFFECT_CAPSULES
+    be_sphere(&choice.sphere);
+#endif
     choice.probability = choice.rest = splat(0);
     cone->axis = disc.direction;
     cone->distance = cone->power = cone->tangent = splat(REAL_LARGE);

@@ -210,6 +210,9 @@ static LampChoice choose_lamp(const Scene *scene, const Point *point, const Lobe
     choice.rest = number;
     choice.sphere.centre = zero3();
     choice.sphere.radius = splat(1);
+#if EFFECT_CAPSULES
+    be_sphere(&choice.sphere);
+#endif
     choice.probability = choose(active, splat(1), splat(0));
     vuint refill = bounce + BOUNCE_LAMP_REFILL;
     vuint word = choose_child(scene, splat_uint(0), 1, point, lobe, time, uniform(key, refill), active, &choice);

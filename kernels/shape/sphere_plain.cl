@@ -22,6 +22,10 @@
 typedef struct Sphere {
     Vec3 centre;
     vreal radius; /* above 0 */
+#if EFFECT_CAPSULES
+    Vec3 axis; /* the members of sphere_robust.cl, without low */
+    vbool is_capsule, inside, beyond;
+#endif
 } Sphere;
 
 /* The perpendicular form in `real`; a root counts from PLAIN_T_MIN on. Returns whether the line meets the sphere. */
@@ -39,7 +43,11 @@ FORCE_INLINE static vbool sphere_roots(const Ray *ray, const Sphere *sphere, vre
 FORCE_INLINE static vbool sphere_intersect(const Ray *ray, const Sphere *sphere, vrefined *t, vbool *enters) {
     vreal near, far;
     const vbool meets = sphere_roots(ray, sphere, &near, &far);
+#if EFFECT_CAPSULES
+    *enters = (near > splat(PLAIN_T_MIN)) & vbool_not(sphere->inside);
+#else
     *enters = near > splat(PLAIN_T_MIN);
+#endif
     *t = choose(*enters, near, far);
     return meets & (*t > splat(PLAIN_T_MIN));
 }

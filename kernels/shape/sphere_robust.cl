@@ -33,6 +33,14 @@
 typedef struct Sphere {
     Vec3 centre;
     vreal radius; /* above 0 */
+#if EFFECT_CAPSULES
+    Vec3 axis;         /* of a capsule: from its first end, where the centre is at first, to the other; else 0 */
+    Vec3 low;          /* what the centre of the ball chosen has beyond a real; of spheres -0 */
+    vbool is_capsule;  /* the ball was chosen on an axis (capsule_robust.cl) */
+    vbool inside;      /* the ray begins inside the capsule, and the ball is the one that it leaves last */
+    vbool beyond;      /* the ball is closer to the other end */
+    vbool at_wall;     /* the line meets the capsule between its ends, and the ball where that does */
+#endif
 } Sphere;
 
 /* The sphere is met before `bound` only if sqrt(r^2 - l^2) >= max(-p, p - bound); p and l err by less than half of
@@ -66,9 +74,16 @@ FORCE_INLINE static Roots sphere_roots(const Ray *ray, const Sphere *sphere) {
     const Point *o = &ray->origin;
     const Vec3 d = ray->direction, c = sphere->centre;
     const vrefined dx = to_refined(d.x), dy = to_refined(d.y), dz = to_refined(d.z);
+#if EFFECT_CAPSULES
+    const Vec3 low = sphere->low;
+    const vrefined ocx = (to_refined(c.x) + to_refined(low.x)) - (to_refined(o->high.x) + to_refined(o->low.x));
+    const vrefined ocy = (to_refined(c.y) + to_refined(low.y)) - (to_refined(o->high.y) + to_refined(o->low.y));
+    const vrefined ocz = (to_refined(c.z) + to_refined(low.z)) - (to_refined(o->high.z) + to_refined(o->low.z));
+#else
     const vrefined ocx = to_refined(c.x) - (to_refined(o->high.x) + to_refined(o->low.x));
     const vrefined ocy = to_refined(c.y) - (to_refined(o->high.y) + to_refined(o->low.y));
     const vrefined ocz = to_refined(c.z) - (to_refined(o->high.z) + to_refined(o->low.z));
+#endif
     /* d.d = 1 + e with |e| of a few ROUNDOFF: 1 / d.d = 1 - e + e e, to the cube of e */
     const vrefined e = fma(dx, dx, fma(dy, dy, fma(dz, dz, splat_refined(-1))));
     const vrefined inverse = fma(e, e - splat_refined(1), splat_refined(1));
@@ -112,9 +127,15 @@ FORCE_INLINE static Roots sphere_roots(const Ray *ray, const Sphere *sphere) {
     const Vec3 high = ray->origin.high, low = ray->origin.low, d = ray->direction, c = sphere->centre;
     const vreal radius = sphere->radius;
     const Vec3 oc = subtract3(c, high);
+#if EFFECT_CAPSULES
+    const vreal ex = (sum_error(c.x, -high.x, oc.x) - low.x) + sphere->low.x;
+    const vreal ey = (sum_error(c.y, -high.y, oc.y) - low.y) + sphere->low.y;
+    const vreal ez = (sum_error(c.z, -high.z, oc.z) - low.z) + sphere->low.z;
+#else
     const vreal ex = sum_error(c.x, -high.x, oc.x) - low.x;
     const vreal ey = sum_error(c.y, -high.y, oc.y) - low.y;
     const vreal ez = sum_error(c.z, -high.z, oc.z) - low.z;
+#endif
     const vreal inverse = splat(2) - dot3(d, d);
     const vreal p1 = dot3(oc, d) * inverse;
     Vec3 l = add3(madd3(-p1, d, oc), vec3(ex, ey, ez));
@@ -147,20 +168,35 @@ FORCE_INLINE static Roots sphere_roots(const Ray *ray, const Sphere *sphere) {
  * towards the centre the ray enters at the near root, and an entry that rounding put behind the origin counts as 0. */
 FORCE_INLINE static vbool sphere_intersect(const Ray *ray, const Sphere *sphere, vrefined *t, vbool *enters) {
     const Roots roots = sphere_roots(ray, sphere);
+#if EFFECT_CAPSULES
+    const vbool within =
+        vbool_of_refined(roots.near * roots.far < to_refined(sphere->radius * ray->origin.error) * splat_refined(-2));
+    const vbool inside = sphere->inside | (within & vbool_not(sphere->is_capsule));
+#else
     const vbool inside =
         vbool_of_refined(roots.near * roots.far < to_refined(sphere->radius * ray->origin.error) * splat_refined(-2));
+#endif
     const vbool ahead = vbool_of_refined(roots.middle > splat_refined(0));
     const vrefined entry =
         choose_refined(vbool_of_refined(roots.near > splat_refined(0)), roots.near, splat_refined(0));
     *t = choose_refined(inside, roots.far, entry);
     *enters = vbool_not(inside);
+#if EFFECT_CAPSULES
+    /* Nearly along the axis a line touches the ball so slightly that rounding could take it off. */
+    return (roots.meets | sphere->at_wall) & (inside | ahead);
+#else
     return roots.meets & (inside | ahead);
+#endif
 }
 
-/* At the end of the chord: 2 p, since the origin is on the sphere. */
+/* At the end of the chord: 2 p, since the origin is on the sphere; of a capsule it is on another ball than the end. */
 FORCE_INLINE static vbool sphere_exit(const Ray *ray, const Sphere *sphere, vrefined *t) {
     const Roots roots = sphere_roots(ray, sphere);
+#if EFFECT_CAPSULES
+    const vrefined length = choose_refined(sphere->is_capsule, roots.far, roots.middle + roots.middle);
+#else
     const vrefined length = roots.middle + roots.middle;
+#endif
     *t = choose_refined(vbool_of_refined(length > splat_refined(0)), length, splat_refined(0));
     return vbool_all;
 }
@@ -198,9 +234,15 @@ FORCE_INLINE static void sphere_surface(const Ray *ray, const Sphere *sphere, vu
     const vrefined y = fma(t, to_refined(direction.y), to_refined(origin->high.y) + to_refined(origin->low.y));
     const vrefined z = fma(t, to_refined(direction.z), to_refined(origin->high.z) + to_refined(origin->low.z));
     const vrefined inverse = divide_refined(splat_refined(1), to_refined(sphere->radius));
+#if EFFECT_CAPSULES
+    normal->x = to_real((x - (to_refined(centre.x) + to_refined(sphere->low.x))) * inverse);
+    normal->y = to_real((y - (to_refined(centre.y) + to_refined(sphere->low.y))) * inverse);
+    normal->z = to_real((z - (to_refined(centre.z) + to_refined(sphere->low.z))) * inverse);
+#else
     normal->x = to_real((x - to_refined(centre.x)) * inverse);
     normal->y = to_real((y - to_refined(centre.y)) * inverse);
     normal->z = to_real((z - to_refined(centre.z)) * inverse);
+#endif
     point->high = vec3(to_real(x), to_real(y), to_real(z));
     point->low = vec3(to_real(x - to_refined(point->high.x)), to_real(y - to_refined(point->high.y)),
                       to_real(z - to_refined(point->high.z)));
@@ -243,6 +285,9 @@ FORCE_INLINE static void sphere_surface(const Ray *ray, const Sphere *sphere, vu
     multiply_add_exactly(radius, normal->x, centre.x, &far_high.x, &far_low.x);
     multiply_add_exactly(radius, normal->y, centre.y, &far_high.y, &far_low.y);
     multiply_add_exactly(radius, normal->z, centre.z, &far_high.z, &far_low.z);
+#if EFFECT_CAPSULES
+    far_low = add3(far_low, sphere->low);
+#endif
     const vbool close_by = t < radius;
     point->high = choose3(close_by, near_high, far_high);
     point->low = choose3(close_by, near_low, far_low);

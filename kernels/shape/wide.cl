@@ -1,4 +1,4 @@
-/* wide.cl: numbers of more than twenty-four bits, and vectors of them, for decisions about triangles.
+/* wide.cl: numbers of more than twenty-four bits, and vectors of them, for decisions about triangles and capsules.
  *
  * Out:   Wide: a double where intersections are refined in double, else the unevaluated sum of two reals, which is right to
  *        about 2^-45 of itself; WIDE_ROUNDOFF, in which heights over a plane are taken for 0; WIDE_POINT_ERROR, of a
@@ -9,7 +9,7 @@
  * products' errors are kept (M. Cornea, J. Harrison and P. Tang, "Scientific Computing on Itanium-based Systems", 2002;
  * C.-P. Jeannerod, "A radix-independent error analysis of the Cornea-Harrison-Tang method", 2016). Of pairs a value
  * below what their rounding may be is 0, so both sides of an edge have it. */
-#if EFFECT_TRIANGLES
+#if EFFECT_TRIANGLES || EFFECT_CAPSULES
 #define Wide LANED(Wide)
 #define WideVec LANED(WideVec)
 #define wide LANED(wide)
@@ -32,6 +32,8 @@
 #define wide_dot LANED(wide_dot)
 #define wide_choose LANED(wide_choose)
 #define one_norm LANED(one_norm)
+#define wide_negative LANED(wide_negative)
+#define wide_madd3 LANED(wide_madd3)
 #define pair_sum LANED(pair_sum)
 #define pair_quick_sum LANED(pair_quick_sum)
 
@@ -50,13 +52,16 @@ static Wide wide_add_real(Wide a, vreal b) { return a + to_refined(b); }
 static Wide wide_multiply(Wide a, Wide b) { return a * b; }
 static Wide wide_madd(Wide a, Wide b, Wide c) { return fma(a, b, c); }
 static Wide wide_divide(Wide a, Wide b) { return divide_refined(a, b); }
-#if EFFECT_TRIANGLE_LAMPS
+#if EFFECT_TRIANGLE_LAMPS || EFFECT_CAPSULES
 static Wide wide_root(Wide a) { return square_root_refined(a); }
 #endif
 FORCE_INLINE static Wide wide_area(Wide x1, Wide y1, Wide x2, Wide y2) {
     const Wide p = x1 * y2, q = y1 * x2;
     return (p - q) + (fma(x1, y2, -p) - fma(y1, x2, -q));
 }
+#if EFFECT_CAPSULES
+static Wide wide_negative(Wide a) { return -a; }
+#endif
 static vbool wide_above_0(Wide a) { return vbool_of_refined(a > splat_refined(0)); }
 static vbool wide_below_0(Wide a) { return vbool_of_refined(a < splat_refined(0)); }
 static vreal wide_near(Wide a) { return to_real(a); }
@@ -116,7 +121,7 @@ static Wide wide_divide(Wide a, Wide b) {
     product.low = -product.low;
     return pair_quick_sum(quotient.high, divide(wide_add(a, product).high, b.high));
 }
-#if EFFECT_TRIANGLE_LAMPS
+#if EFFECT_TRIANGLE_LAMPS || EFFECT_CAPSULES
 /* One step of Newton's method. */
 static Wide wide_root(Wide a) {
     const Wide root = wide(square_root(a.high));
@@ -139,6 +144,13 @@ FORCE_INLINE static Wide wide_area(Wide x1, Wide y1, Wide x2, Wide y2) {
     area.low = choose(some, area.low, splat(0));
     return area;
 }
+#if EFFECT_CAPSULES
+static Wide wide_negative(Wide a) {
+    a.high = -a.high;
+    a.low = -a.low;
+    return a;
+}
+#endif
 static vbool wide_above_0(Wide a) { return a.high > splat(0); }
 static vbool wide_below_0(Wide a) { return a.high < splat(0); }
 static vreal wide_near(Wide a) { return a.high; }
@@ -178,6 +190,17 @@ static WideVec wide_cross(WideVec a, WideVec b) {
 static Wide wide_dot(WideVec a, WideVec b) {
     return wide_madd(a.x, b.x, wide_madd(a.y, b.y, wide_multiply(a.z, b.z)));
 }
+
+#if EFFECT_CAPSULES
+/* s a + b */
+static WideVec wide_madd3(Wide s, WideVec a, WideVec b) {
+    WideVec sum;
+    sum.x = wide_madd(s, a.x, b.x);
+    sum.y = wide_madd(s, a.y, b.y);
+    sum.z = wide_madd(s, a.z, b.z);
+    return sum;
+}
+#endif
 
 /* |x| + |y| + |z|, at least the length. */
 static vreal one_norm(WideVec a) { return fabs(wide_near(a.x)) + fabs(wide_near(a.y)) + fabs(wide_near(a.z)); }

@@ -63,7 +63,7 @@ class BpMeshSet(c.Structure):
 class BpSceneInfo(c.Structure):
     _fields_ = [("title", c.c_char_p), ("source", c.c_char_p), ("width", c.c_uint32), ("height", c.c_uint32),
                 ("samples_per_pixel", c.c_uint32), ("max_depth", c.c_uint32), ("spheres", c.c_size_t),
-                ("materials", c.c_size_t), ("transfer", c.c_int), ("triangles", c.c_size_t)]
+                ("materials", c.c_size_t), ("transfer", c.c_int), ("triangles", c.c_size_t), ("capsules", c.c_size_t)]
 
 
 class BpCameraInfo(c.Structure):

@@ -236,6 +236,7 @@ class Scene:
         self.max_depth: int = info.max_depth
         self.spheres: int = info.spheres
         self.triangles: int = info.triangles
+        self.capsules: int = info.capsules
         self.transfer: str = lib.TRANSFERS[info.transfer]
         self.camera = Camera(_triple(camera.lookfrom), _triple(camera.lookat), _triple(camera.vup), camera.vfov,
                              camera.focus_dist, camera.aperture)

@@ -138,10 +138,12 @@ static void departure(void **state) {
                 const Vec point = add(vec(built.spheres[0].center), scale(r, n));
                 const Vec aslant = scale(sqrt((1 - cosine) * (1 + cosine)), tangent);
                 Hit hit;
-                const Ray out = {point, add(aslant, scale(cosine, n)), &built.spheres[0], 0, false, NULL};
+                const Ray out = {
+                    .origin = point, .direction = add(aslant, scale(cosine, n)), .leaves = &built.spheres[0]};
                 assert_false(bp_ref_hit(&built.scene, &out, &hit));
-                const Ray in = {point, scale(3, sub(aslant, scale(cosine, n))), &built.spheres[0], 0, false,
-                                NULL};
+                const Ray in = {.origin = point,
+                                .direction = scale(3, sub(aslant, scale(cosine, n))),
+                                .leaves = &built.spheres[0]};
                 assert_true(bp_ref_hit(&built.scene, &in, &hit));
                 const double chord = 2 * r * cosine;
                 const double allowed = 1e-9 + 16 * (center_error + 1e-16 * r) / (cosine * r);
@@ -164,7 +166,7 @@ static void far_small_sphere(void **state) {
         const double angle = k * 0.0062831853;
         for (int outside = 0; outside < 2; ++outside) {
             const double b = (outside ? 1.01e-3 : 0.99e-3);
-            const Ray ray = {{0, 0, 0}, {b * cos(angle), b * sin(angle), -1e5}, NULL, 0, false, NULL};
+            const Ray ray = {.direction = {b * cos(angle), b * sin(angle), -1e5}};
             Hit hit;
             assert_int_equal(bp_ref_hit(&built.scene, &ray, &hit), !outside);
         }

@@ -61,7 +61,7 @@ class Messages(ProgramTest):
     def test_shapes(self):
         for name in ("triangle", "box", "mesh", "cylinders", "planes"):
             said = self.refused('{"camera": {},\n "%s": []}' % name, "2:2", f"{name}: unknown member; shapes are written in")
-            self.assertIn('"spheres", "triangles", "quads" and "boxes", and files of them named in "clouds", "particles" or "meshes"', said)
+            self.assertIn('"spheres", "triangles", "quads", "boxes" and "capsules", and files of them named in "clouds", "particles" or "meshes"', said)
 
     def test_a_former_name(self):
         self.refused('{"camera": {}, "light": "soft"}', "1:16", 'light: unknown member; "light" is now "lighting"')

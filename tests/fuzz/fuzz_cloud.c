@@ -72,7 +72,8 @@ static void check_scene(const BpScene *scene) {
     }
     if (scene->sphere_count > PACKED_MAX) return;
     for (int single = 0; single < 2; single++) {
-        const BpTreeOptions options = {8, single == 1, scene->sphere_count % 2 == 0, 1, false};
+        const BpTreeOptions options = {
+            .width = 8, .single_precision = single == 1, .list = scene->sphere_count % 2 == 0, .threads = 1};
         check_packed(scene, &options);
     }
 }

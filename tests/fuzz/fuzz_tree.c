@@ -97,7 +97,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     bp_rounding_warnings(&scene, BP_PRECISION_SINGLE, &limits);
     for (uint32_t width = 2; width <= 16; width *= 2)
         for (int form = 0; form < 4; ++form) {
-            const BpTreeOptions options = {width, form % 2 == 0, form / 2 == 0, 1, false};
+            const BpTreeOptions options = {
+                .width = width, .single_precision = form % 2 == 0, .list = form / 2 == 0, .threads = 1};
             check_packed(&scene, &options);
         }
     free(spheres);

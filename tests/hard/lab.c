@@ -61,7 +61,8 @@ bool lab_open(Lab *lab, const char *variant) {
         return false;
     }
     lab->options = (BpProgramOptions){
-        .effects = BP_EFFECTS_ALL & ~(1u << BP_EFFECT_MOTION), /* probes make rays and leaves of their own */
+        /* probes make rays and leaves of their own */
+        .effects = BP_EFFECTS_ALL & ~(1u << BP_EFFECT_MOTION | 1u << BP_EFFECT_CAPSULES),
 
         .tree = true,
         .precision = lab->real_double ? BP_PRECISION_DOUBLE : BP_PRECISION_SINGLE,
@@ -201,6 +202,7 @@ BpWorker *lab_scene(const Lab *lab, const BpScene *scene) {
     set_options(lab, scene, &options);
     check(bp_render_plan(scene, &options, &lab->info, &setup, &packed, &err), &err);
     setup.program = lab->options; /* the program that is built already */
+    if (scene->capsule_count > 0) setup.program.effects |= 1u << BP_EFFECT_CAPSULES;
     char *text = probe_text();
     setup.extra_name = "probe.cl";
     setup.extra_text = text;

@@ -13,6 +13,13 @@
 #define NO_TRIANGLES(leaf_count)
 #endif
 
+/* Nor are there axes. Only programs for scenes know capsules, and these do not run the kernels that have leaves of their own. */
+#if EFFECT_CAPSULES
+#define NO_CAPSULES 0,
+#else
+#define NO_CAPSULES
+#endif
+
 enum { PROBE_RAY_REALS = 10, PROBE_HIT_REALS = 8, PROBE_POINT_REALS = 10 };
 
 /* `own`: 0 for a ray from free space, 1 for one that leaves the sphere of `slot` outward, 2 inward. */
@@ -37,7 +44,7 @@ __kernel void probe_leaf(uint count, __global const real *rays, __global const u
     __global const real *leaf = leaves + (size_t)item * 4 * TREE_WIDTH;
     const uint lane = item % TREE_WIDTH;
     Geometry geometry;
-    geometry_init(boxes, children, leaf, leaf, slot_sphere, NO_TRIANGLES(1) 1, 1, &geometry);
+    geometry_init(boxes, children, leaf, leaf, slot_sphere, NO_CAPSULES NO_TRIANGLES(1) 1, 1, &geometry);
     const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, own[item], lane);
     const Hit hit = intersect_closest(&geometry, &ray, 1);
     __global refined *row = out + (size_t)item * PROBE_HIT_REALS;
@@ -178,7 +185,7 @@ __kernel void probe_normalise(uint count, __global const real *in, __global refi
 __kernel void probe_boxes(uint count, __global const real *rays, __global const real *boxes, __global uint *out) {
     PROBE_ITEM
     Geometry geometry;
-    geometry_init(boxes, 0, 0, 0, 0, NO_TRIANGLES(0) 0, 0, &geometry);
+    geometry_init(boxes, 0, 0, 0, 0, NO_CAPSULES NO_TRIANGLES(0) 0, 0, &geometry);
     const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
     const BoxRay box = box_ray(&ray);
     vreal_node entry;
@@ -199,7 +206,7 @@ __kernel void probe_tree(uint count, __global const real *rays, __global const r
                          uint first_leaves, uint leaf_count, __global refined *out) {
     PROBE_ITEM
     Geometry geometry;
-    geometry_init(boxes, children, leaves, leaves, slot_sphere, NO_TRIANGLES(leaf_count) first_leaves, leaf_count, &geometry);
+    geometry_init(boxes, children, leaves, leaves, slot_sphere, NO_CAPSULES NO_TRIANGLES(leaf_count) first_leaves, leaf_count, &geometry);
     const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
     const Hit tree = intersect_closest(&geometry, &ray, 1);
     Hit list = no_hit(REAL_LARGE);

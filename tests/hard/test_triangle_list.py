@@ -13,8 +13,8 @@ EDGES, CASES = "tests/hard/test_triangles.c", "tests/hard/test_triangle_cases.c"
 TRIANGLES, OPTICS, MESHES = "tests/agree/test_triangles.py", "tests/agree/test_triangle_optics.py", "tests/meshes/test_mesh_scenes.py"
 FILES, READ, FORMS = "tests/meshes/test_mesh_files.py", "tests/meshes/test_mesh_read.c", "tests/render/test_render_same.c"
 
-# Capsules (a capsule of length 0, rays along its axis, its mean chord) and normals between vertices (their fold, their furnace) would have
-# cases of their own; Ballpark has neither shape.
+# Capsules have theirs in test_capsules.c. Normals between vertices (their fold, their furnace) would have cases of their own;
+# Ballpark does not have them.
 HARD_CASES = {
     "a million rays at edges of closed meshes, and as many at vertices: none is lost, with double and with pairs of floats": [(EDGES, "main")],
     "size a millionth of the distance: no decision is wrong beyond 1e-5 of an edge": [(CASES, "small_from_afar"), (CASES, "far_from_the_camera")],

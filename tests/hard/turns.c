@@ -1,23 +1,30 @@
 /* turns.c: what turns.h promises. */
 #include "turns.h"
 
-BpWorker *turns_worker(const Lab *lab, const BpSphere *spheres, size_t sphere_count,
-                       const BpTriangle *triangles, size_t count) {
+static BpWorker *make_worker(const Lab *lab, const BpScene *shapes) {
     BpMaterial matte = {.name = (char *)"matte", .kind = BP_MATERIAL_LAMBERTIAN, .albedo = {0.5, 0.5, 0.5}};
-    BpScene scene = {.path = (char *)"",
-                     .title = (char *)"",
-                     .source = (char *)"",
-                     .notes = (char *)"",
-                     .materials = &matte,
-                     .material_count = 1,
-                     .spheres = (BpSphere *)(uintptr_t)spheres,
-                     .sphere_count = sphere_count,
-                     .triangles = (BpTriangle *)(uintptr_t)triangles,
-                     .triangle_count = count,
-                     .implicit_material = SIZE_MAX};
+    BpScene scene = *shapes;
+    scene.path = scene.title = scene.source = scene.notes = (char *)"";
+    scene.materials = &matte;
+    scene.material_count = 1;
+    scene.implicit_material = SIZE_MAX;
     bp_camera_defaults(&scene.camera);
     scene.camera.width = scene.camera.height = 4;
     return lab_scene(lab, &scene);
+}
+
+BpWorker *turns_worker(const Lab *lab, const BpSphere *spheres, size_t sphere_count,
+                       const BpTriangle *triangles, size_t count) {
+    const BpScene scene = {.spheres = (BpSphere *)(uintptr_t)spheres,
+                           .sphere_count = sphere_count,
+                           .triangles = (BpTriangle *)(uintptr_t)triangles,
+                           .triangle_count = count};
+    return make_worker(lab, &scene);
+}
+
+BpWorker *turns_capsules(const Lab *lab, const BpCapsule *capsules, size_t count) {
+    const BpScene scene = {.capsules = (BpCapsule *)(uintptr_t)capsules, .capsule_count = count};
+    return make_worker(lab, &scene);
 }
 
 void turns_run(const Lab *lab, BpWorker *worker, size_t rays_count, const double *rays,

@@ -1,4 +1,4 @@
-/* turns.h: what rays meet among spheres and triangles, and what they meet next when they leave it.
+/* turns.h: what rays meet among spheres, triangles and capsules, and what they meet next when they leave it.
  *
  * In:    spheres, triangles, rays, the directions in which they leave.   Out: TURN_REALS numbers a ray.
  * Knows: lab.h, and where a line passes a triangle in 113 bits.   Does not know: which triangles and rays
@@ -18,6 +18,8 @@ enum { TURN_HIGH = 6, TURN_LOW = 9, TURN_ERROR = 12 };
 /* A worker for these shapes, which the caller keeps, seen from the origin. */
 BpWorker *turns_worker(const Lab *lab, const BpSphere *spheres, size_t sphere_count,
                        const BpTriangle *triangles, size_t count);
+/* The same for capsules alone, which it numbers from 0. */
+BpWorker *turns_capsules(const Lab *lab, const BpCapsule *capsules, size_t count);
 /* `directions`: 3 floats a ray, of any length near 1. */
 void turns_run(const Lab *lab, BpWorker *worker, size_t rays_count, const double *rays,
                const double *directions, double *out);

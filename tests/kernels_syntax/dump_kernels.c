@@ -104,12 +104,14 @@ int main(int argc, char **argv) {
     }
     for (size_t c = 0; status == BP_OK && c < count; ++c) {
         BpProgramOptions options = combination(combinations[c]);
-        options.effects = BP_EFFECTS_ALL & ~(1u << BP_EFFECT_LAMPS | 1u << BP_EFFECT_MEDIA);
+        options.effects =
+            BP_EFFECTS_ALL & ~(1u << BP_EFFECT_LAMPS | 1u << BP_EFFECT_MEDIA | 1u << BP_EFFECT_CAPSULES);
         options.triangles_alone = true;
         status = dump(argv[1], &options, &err);
         /* Or rays are sent to triangles, and to nothing else. */
-        options.effects = BP_EFFECTS_ALL & ~(1u << BP_EFFECT_MEDIA | 1u << BP_EFFECT_DISCS |
-                                             1u << BP_EFFECT_ENVIRONMENT | 1u << BP_EFFECT_CAUSTICS);
+        options.effects =
+            BP_EFFECTS_ALL & ~(1u << BP_EFFECT_MEDIA | 1u << BP_EFFECT_DISCS | 1u << BP_EFFECT_ENVIRONMENT |
+                               1u << BP_EFFECT_CAUSTICS | 1u << BP_EFFECT_CAPSULES);
         if (status == BP_OK) status = dump(argv[1], &options, &err);
     }
     if (status != BP_OK) fprintf(stderr, "dump_kernels: %s\n", err.message);

@@ -109,6 +109,16 @@ def triangle_cases(variant="double"):
     return Program("hard_triangle_cases", (variant,), "1 exact")
 
 
+def hard_capsules(variant="double"):
+    """Hard cases of capsules (tests/hard/test_capsules.c)."""
+    return Program("hard_capsules", (variant,), "1 exact")
+
+
+def capsules(*names):
+    """Tests of tests/agree/test_capsules.py."""
+    return Script("tests/agree/test_capsules.py", tuple(f"Capsules.test_{name}" for name in names), "1 exact")
+
+
 def triangle_optics(*names):
     """Tests of tests/agree/test_triangle_optics.py."""
     return Script("tests/agree/test_triangle_optics.py", tuple(f"Optics.test_{name}" for name in names), "4 closed forms")
@@ -1273,7 +1283,7 @@ MUTANTS = [
     Mutant("once inside, always inside", "classic: the medium of the first sphere that was entered",
            [patch(KERNEL, "path->unsure = path->unsure | passed;", "(void)path;")], [check("media-smoke")]),
     Mutant("reflected into the other medium", "classic: entering and leaving told by the normal alone",
-           [patch(KERNEL, "(own & ray->inward)", "(own & vbool_not(ray->inward))")], [check("media-tinted-glass")]),
+           [patch(KERNEL, "asked & ((own & ray->inward)", "asked & ((own & vbool_not(ray->inward))")], [check("media-tinted-glass")]),
     Mutant("scattering counted as absorption too", "classic: extinction for absorption",
            [patch(KERNEL, "const Vec3 left = vec3(exp_minus(absorption.x * *length)", "const Vec3 left = vec3(exp_minus((absorption.x + scattering.x) * *length)")],
            [check("media-smoke")]),
@@ -1781,6 +1791,40 @@ MUTANTS = [
            [patch(KERNEL, "(wide_below_0(sum) & (z > splat(0))) | (wide_above_0(sum) & (z < splat(0)))",
                   "(wide_below_0(sum) & (z < splat(0))) | (wide_above_0(sum) & (z > splat(0)))")],
            [triangles("prism")]),
+    Mutant("a capsule's exit at its near ball", "capsules: the ball entered first for the one left last",
+           [patch(KERNEL, "choose(capsule->inside, half_chord, wide_negative(half_chord))", "choose(vbool_none, half_chord, wide_negative(half_chord))")],
+           [hard_capsules()]),
+    Mutant("capsules without ends", "capsules: a place on the axis is not clamped",
+           [patch(KERNEL, "stand_on_axis(wide_choose(parallel, end, within_axis(place)), capsule);", "stand_on_axis(wide_choose(parallel, end, place), capsule);")],
+           [hard_capsules()]),
+    Mutant("a ball on the axis without its low part", "capsules: a centre rounded to a real",
+           [patch(KERNEL, "capsule->low = choose3(moves, low, vec3(splat(R(-0.0))", "capsule->low = choose3(vbool_none, low, vec3(splat(R(-0.0))")],
+           [hard_capsules()]),
+    Mutant("lines that graze a ball on the axis", "capsules: rounding decides between the ends",
+           [patch(KERNEL, "return (roots.meets | sphere->at_wall) & (inside | ahead);", "return roots.meets & (inside | ahead);")],
+           [hard_capsules("float")]),
+    Mutant("the wrong end along the axis", "capsules: ends exchanged where a ray is parallel",
+           [patch(KERNEL, "(wide_above_0(of_d) & capsule->inside) | (wide_below_0(of_d) & vbool_not(capsule->inside))",
+                  "(wide_below_0(of_d) & capsule->inside) | (wide_above_0(of_d) & vbool_not(capsule->inside))")],
+           [hard_capsules()]),
+    Mutant("a capsule's chord as a sphere's", "capsules: twice the way to the middle for the exit",
+           [patch(KERNEL, "choose_refined(sphere->is_capsule, roots.far, roots.middle + roots.middle)", "roots.middle + roots.middle")],
+           [hard_capsules()]),
+    Mutant("inside a capsule by its near ball", "capsules: the near ball's power for the capsule's",
+           [patch(KERNEL, "const vbool inside = sphere->inside | (within & vbool_not(sphere->is_capsule));", "const vbool inside = within;")],
+           [hard_capsules()]),
+    Mutant("capsules ruled out by their first end", "capsules: a candidate's place on the axis left out",
+           [patch(KERNEL, "const Vec3 off = loose_madd3(place, across, l);", "const Vec3 off = l;")], [hard_capsules()]),
+    Mutant("capsules ruled out behind their first end", "capsules: a candidate's far end left out",
+           [patch(KERNEL, "last = p + larger(along, splat(0));", "last = p;")], [hard_capsules()]),
+    Mutant("capsules ruled out beyond their first end", "capsules: a candidate's near end left out",
+           [patch(KERNEL, "const vreal first = p + smaller(along, splat(0))", "const vreal first = p")], [hard_capsules()]),
+    Mutant("a capsule's box around one end", "packed: the other end left out of a box",
+           [patch("host/packed/tree_write.c", "const double low = fmin(center[a], center[a] + axis), high = fmax(center[a], center[a] + axis);",
+                  "const double low = center[a], high = center[a];")], [hard_capsules()]),
+    Mutant("capsules of glass in one place", "scene: ends are not put in order",
+           [patch("host/scene/capsule_rules.c", "const bool forward = compare_points(capsule->ends[0], capsule->ends[1]) < 0;", "const bool forward = true;")],
+           [capsules("refusals")]),
     Mutant("a triangle's normal points inward", "triangles: the sides of the cross product exchanged",
            [patch("kernels/shape/triangle_robust.cl", "*normal = wide_unit(wide_cross(to_b, to_c));", "*normal = wide_unit(wide_cross(to_c, to_b));")],
            [triangles("prism")]),

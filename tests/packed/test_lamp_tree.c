@@ -76,7 +76,7 @@ static void balls_hold_lamps_that_move(void **state) {
                               .vup = {0, 1, 0},
                               .focus_dist = 10};
     for (int single = 0; single < 2; ++single) {
-        const BpTreeOptions options = {8, single, false, 1, false};
+        const BpTreeOptions options = {.width = 8, .single_precision = single, .threads = 1};
         const double everywhere[] = {0, 0, 0, 1000};
         BpPacked packed;
         BpError err = {0};
@@ -118,7 +118,7 @@ static void slots_of_a_lamp_around_everything(void **state) {
                               .lookfrom = {0, 0, 20},
                               .vup = {0, 1, 0},
                               .focus_dist = 10};
-    const BpTreeOptions options = {8, true, false, 1, false};
+    const BpTreeOptions options = {.width = 8, .single_precision = true, .threads = 1};
     BpPacked packed;
     BpError err = {0};
     assert_int_equal(bp_scene_pack(&scene, &options, true, true, &packed, &err), BP_OK);
@@ -148,7 +148,7 @@ static void triangles_that_emit(void **state) {
                               .lookat = {0, 0, -1},
                               .vup = {0, 1, 0},
                               .focus_dist = 10};
-    const BpTreeOptions options = {8, true, false, 1, false};
+    const BpTreeOptions options = {.width = 8, .single_precision = true, .threads = 1};
     BpPacked packed;
     BpError err = {0};
     assert_int_equal(bp_scene_pack(&scene, &options, true, true, &packed, &err), BP_OK);

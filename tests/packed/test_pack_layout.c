@@ -30,7 +30,7 @@ static BpScene empty_scene(void) {
 }
 
 static void pack(const BpScene *scene, bool single, BpPacked *packed) {
-    const BpTreeOptions options = {8, single, false, 1, false};
+    const BpTreeOptions options = {.width = 8, .single_precision = single, .threads = 1};
     BpError err = {0};
     assert_int_equal(bp_scene_pack(scene, &options, true, true, packed, &err), BP_OK);
     assert_int_equal(bp_packed_real_size(packed), single ? 4 : 8);

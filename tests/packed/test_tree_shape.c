@@ -145,7 +145,8 @@ static void every_shape_and_size(void **state) {
                 for (int single = 0; single < 2; ++single)
                     for (int o = 0; o < 2; ++o) {
                         BpScene scene = make_spheres(shape, counts[c], 1);
-                        const BpTreeOptions options = {widths[w], single, false, 1, false};
+                        const BpTreeOptions options = {
+                            .width = widths[w], .single_precision = single, .threads = 1};
                         BpTree tree;
                         BpError err = {0};
                         assert_int_equal(bp_tree_build(&scene, origins[o], &options, &tree, &err), BP_OK);
@@ -158,7 +159,7 @@ static void every_shape_and_size(void **state) {
 static void check_shape(int shape, size_t count, uint32_t width) {
     const double origin[3] = {3, 2, 1};
     BpScene scene = make_spheres(shape, count, 2);
-    const BpTreeOptions options = {width, true, false, 0, false};
+    const BpTreeOptions options = {.width = width, .single_precision = true};
     BpTree tree;
     assert_int_equal(bp_tree_build(&scene, origin, &options, &tree, NULL), BP_OK);
     check_tree(&scene, origin, &tree);
@@ -191,7 +192,7 @@ static void assert_same_for_threads(int shape, size_t count) {
     BpScene scene = make_spheres(shape, count, 3);
     BpTree first = {0};
     for (int t = 0; t < 3; ++t) {
-        const BpTreeOptions options = {8, true, false, threads[t], false};
+        const BpTreeOptions options = {.width = 8, .single_precision = true, .threads = threads[t]};
         BpTree tree;
         assert_int_equal(bp_tree_build(&scene, origin, &options, &tree, NULL), BP_OK);
         if (t == 0) {
@@ -227,7 +228,8 @@ static void lists_keep_the_order(void **state) {
     for (uint32_t width = 2; width <= 8; width *= 2)
         for (int c = 0; c < 6; ++c) {
             BpScene scene = make_spheres(SHAPE_WILD, counts[c], 4);
-            const BpTreeOptions options = {width, c % 2 == 0, true, 1, false};
+            const BpTreeOptions options = {
+                .width = width, .single_precision = c % 2 == 0, .list = true, .threads = 1};
             BpTree tree;
             assert_int_equal(bp_tree_build(&scene, origin, &options, &tree, NULL), BP_OK);
             assert_int_equal(tree.node_count, 0);
@@ -248,7 +250,7 @@ static void lists_keep_the_order(void **state) {
 static void huge_spheres_come_first(void **state) {
     (void)state;
     const double origin[3] = {0, 0, 0};
-    const BpTreeOptions options = {8, true, false, 1, false};
+    const BpTreeOptions options = {.width = 8, .single_precision = true, .threads = 1};
     for (int huge = 0; huge < 12; ++huge) {
         BpScene scene = make_spheres(SHAPE_FIELD, 5000, 5);
         for (int i = 0; i < huge; ++i) scene.spheres[17 * i + 3].radius = (i % 2 ? -100.0 : 100.0) - i;
@@ -276,7 +278,7 @@ static void leaves_are_full_and_memory_small(void **state) {
     for (uint32_t width = 4; width <= 8; width *= 2)
         for (int i = 0; i < 4; ++i) {
             BpScene scene = make_spheres(shapes[i], 100000, 9);
-            const BpTreeOptions options = {width, true, false, 0, false};
+            const BpTreeOptions options = {.width = width, .single_precision = true};
             BpTree tree;
             assert_int_equal(bp_tree_build(&scene, origin, &options, &tree, NULL), BP_OK);
             const double slots = (double)tree.leaf_count * width;
@@ -296,16 +298,16 @@ static void refusals(void **state) {
     BpScene scene = make_spheres(SHAPE_FIELD, 10, 6);
     BpTree tree;
     BpError err = {0};
-    const BpTreeOptions three = {3, true, false, 1, false};
+    const BpTreeOptions three = {.width = 3, .single_precision = true, .threads = 1};
     assert_int_equal(bp_tree_build(&scene, origin, &three, &tree, &err), BP_ERR_LIMIT);
     assert_null(tree.leaves);
     /* Refused by the count alone: the spheres are not looked at. */
-    const BpTreeOptions two = {2, true, false, 1, false};
+    const BpTreeOptions two = {.width = 2, .single_precision = true, .threads = 1};
     scene.sphere_count = (1u << 25) + 1;
     assert_int_equal(bp_tree_build(&scene, origin, &two, &tree, &err), BP_ERR_LIMIT);
     assert_non_null(strstr(err.message, "33554433"));
     scene.sphere_count = BP_SPHERES_MAX + 1ull;
-    const BpTreeOptions eight = {8, true, true, 1, false};
+    const BpTreeOptions eight = {.width = 8, .single_precision = true, .list = true, .threads = 1};
     assert_int_equal(bp_tree_build(&scene, origin, &eight, &tree, &err), BP_ERR_LIMIT);
     bp_error_clear(&err);
     free(scene.spheres);

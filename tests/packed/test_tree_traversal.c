@@ -104,7 +104,7 @@ static void walk_equals_brute_force(void **state) {
             for (int single = 0; single < 2; ++single) {
                 const uint32_t count = 2000;
                 BpScene scene = make_spheres(shape, count, 8);
-                const BpTreeOptions options = {width, single, false, 1, false};
+                const BpTreeOptions options = {.width = width, .single_precision = single, .threads = 1};
                 BpTree tree;
                 assert_int_equal(bp_tree_build(&scene, view, &options, &tree, NULL), BP_OK);
                 unsigned long visits = 0, hits = 0;

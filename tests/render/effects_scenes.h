@@ -23,6 +23,7 @@ typedef struct EffectsScene {
     BpSphere spheres[48];
     BpTriangle triangles[4];
     float normals[3][3][3];
+    BpCapsule capsules[4];
     BpTexture textures[10];
     BpImage image, sky, light, *images[3];
     float image_texels[5 * 3 * 3], sky_texels[8 * 4 * 3], light_texels[2 * 3];
@@ -50,7 +51,7 @@ static inline bool effects_can_occur(uint32_t bits, bool tree) {
     if (bp_effects_has(bits, BP_EFFECT_NOISE) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
     if (bp_effects_has(bits, BP_EFFECT_IMAGES) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
     /* In these scenes they have the first material, which is matte or metal and whose texture fills space. */
-    if (bp_effects_has(bits, BP_EFFECT_TRIANGLES) &&
+    if ((bits & (EFFECT_BIT(TRIANGLES) | EFFECT_BIT(CAPSULES))) != 0 &&
         (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL))) == 0)
         return false;
     /* Rays are sent to them where they are sent to others, and there are some. */
@@ -266,6 +267,21 @@ static inline void effects_triangles(EffectsScene *made, uint32_t bits) {
     lamp->emit[0] = 4, lamp->emit[1] = 3, lamp->emit[2] = 0.5;
 }
 
+/* One has no length, one crosses another, and one lies behind spheres. */
+static inline void effects_capsules(EffectsScene *made) {
+    static const double at[4][2][3] = {{{-2, 1.5, -4}, {1, 0.5, -3}},
+                                       {{-1, 0.2, -3.5}, {0, 1.8, -3.5}},
+                                       {{1.5, 1.5, -4}, {1.5, 1.5, -4}},
+                                       {{-1.5, -0.3, -1.2}, {1.5, -0.2, -1.8}}};
+    made->scene.capsules = made->capsules;
+    made->scene.capsule_count = 4;
+    for (int i = 0; i < 4; ++i) {
+        memcpy(made->capsules[i].ends, at[i], sizeof at[i]);
+        made->capsules[i].radius = 0.1 + 0.05 * i;
+        made->capsules[i].albedo[0] = made->capsules[i].albedo[1] = BP_NO_ALBEDO;
+    }
+}
+
 /* Media in most of what light passes through, and around all in every fifth set. */
 static inline void effects_media(EffectsScene *made, uint32_t bits) {
     made->media[0] = (BpMedium){
@@ -332,6 +348,7 @@ static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
     effects_materials(made, bits);
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES)) effects_textures(made, bits);
     if (bp_effects_has(bits, BP_EFFECT_TRIANGLES)) effects_triangles(made, bits);
+    if (bp_effects_has(bits, BP_EFFECT_CAPSULES)) effects_capsules(made);
     effects_spheres(made, tree);
     if (bp_effects_has(bits, BP_EFFECT_MOTION)) effects_motion(made);
     if (bp_effects_has(bits, BP_EFFECT_MEDIA)) effects_media(made, bits);

@@ -39,7 +39,8 @@ static const BpMaterial debug = {.name = (char *)"debug", .kind = BP_MATERIAL_NO
 /* Effects that the materials of these tests never call for. */
 #define OF_SCENES                                                                                            \
     (BIT(DISCS) | BIT(TEXTURES) | BIT(NOISE) | BIT(IMAGES) | BIT(ENVIRONMENT) | BIT(MOTION) | BIT(MEDIA) |   \
-     BIT(SHADOW_CATCHER) | BIT(CAUSTICS) | BIT(TRIANGLES) | BIT(TRIANGLE_LAMPS) | BIT(SMOOTH_NORMALS))
+     BIT(SHADOW_CATCHER) | BIT(CAUSTICS) | BIT(TRIANGLES) | BIT(TRIANGLE_LAMPS) | BIT(SMOOTH_NORMALS) |      \
+     BIT(CAPSULES))
 
 /* What materials name as textures 1 and 2. */
 static BpTexture both[2] = {{.type = BP_TEXTURE_CHECKER, .colors = {{0, 0, 0}, {2, 2, 2}}},
@@ -127,7 +128,8 @@ static void only_materials_in_use_count(void **state) {
     assert_int_equal(analyse(NULL, 0, 1, 0, 0, 1).bits, 0);
 }
 
-/* More materials than are counted at a time, three of them in use: the first, one amid them and the last. */
+/* More materials than are counted at a time, three of them in use: the first, one amid them and the
+ * last. */
 static void twenty_thousand_materials(void **state) {
     (void)state;
     enum { COUNT = 20000 };

@@ -314,7 +314,7 @@ static void films_tell_textures_apart(void **state) {
 }
 
 static void pack(const BpScene *scene, bool single, BpPacked *packed) {
-    const BpTreeOptions options = {8, single, false, 1, false};
+    const BpTreeOptions options = {.width = 8, .single_precision = single, .threads = 1};
     BpError err = {0};
     if (bp_scene_pack(scene, &options, true, true, packed, &err) != BP_OK) fail_msg("%s", err.message);
 }
