@@ -1,4 +1,4 @@
-/* main.c: the program: read the command line, run the command, say what went wrong.
+/* main.c: the program: reads the command line, runs the command, reports errors.
  *
  * In:    argc, argv.   Out: an exit code (BP_STATUS_LIST).
  * Knows: how an error is shown, and by which of several processes.  Does not know: what any command does. */
@@ -23,7 +23,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Whether `text` has `word` standing by itself. */
+/* Whether `text` contains `word` as a whole word. */
 static bool has_word(const char *text, const char *word) {
     const size_t length = strlen(word);
     for (const char *at = strstr(text, word); length > 0 && at != NULL; at = strstr(at + 1, word))
@@ -36,7 +36,7 @@ static bool has_word(const char *text, const char *word) {
 static void print_message(const BpError *err, BpStatus status, FILE *out) {
     /* A message about a file as a whole often names it already. */
     const bool names_file = err->line == 0 && has_word(err->message, err->file);
-    /* "ballpark render: missing SCENE" names the program already. */
+    /* "ballpark render: missing SCENE" begins with the program already. */
     if (err->file[0] != '\0' || strncmp(err->message, "ballpark ", 9) != 0) fputs("ballpark: ", out);
     if (err->file[0] != '\0' && !names_file) {
         bp_print_escaped(err->file, false, out);
@@ -55,7 +55,7 @@ static void print_error(BpError *err, BpStatus status, bool wide) {
     char *text = NULL;
     size_t size = 0;
     FILE *message = open_memstream(&text, &size);
-    if (message == NULL) print_message(err, status, stderr); /* no memory: better unwrapped than unsaid */
+    if (message == NULL) print_message(err, status, stderr); /* out of memory: printed unwrapped */
     if (message != NULL) {
         print_message(err, status, message);
         const bool wraps = !wide && isatty(STDERR_FILENO);
@@ -79,10 +79,10 @@ static void open_standard_streams(void) {
     }
 }
 
-/* BP_ERR_FILE unless everything that was written to standard output has arrived. `flush_problem`: 0, or the
- * errno of a flush that has failed already. */
+/* BP_ERR_FILE unless all output to standard output has been written. `flush_problem`: 0, or the errno of a
+ * flush that has failed already. */
 static BpStatus finish_standard_output(int flush_problem, BpError *err) {
-    /* A write that failed earlier has left its mark, but its reason may be forgotten. */
+    /* A write that failed earlier has set the stream's error flag, but errno may be lost. */
     const bool failed_before = ferror(stdout) != 0;
     const bool closed = fclose(stdout) == 0;
     if (closed && !failed_before) return BP_OK;
@@ -91,14 +91,14 @@ static BpStatus finish_standard_output(int flush_problem, BpError *err) {
                    problem == 0 ? "not all of it was taken" : strerror(problem));
 }
 
-/* Whether standard output is a pipe whose reader has left, and something was to be written to it. */
+/* Whether standard output is a pipe whose reader has left, and there was output for it. */
 static bool reader_has_left(void) {
     struct pollfd output = {.fd = STDOUT_FILENO};
     return ferror(stdout) != 0 && poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
 }
 
-/* Ends as programs do that write to a pipe without a reader, so that shells and scripts see what they know:
- * killed by SIGPIPE, without a word. */
+/* Ends the program by SIGPIPE without a message, as shells and scripts expect of a program that writes to a
+ * pipe without a reader. */
 static void end_by_signal(void) {
     sigset_t set;
     bp_output_abandon();
@@ -109,15 +109,15 @@ static void end_by_signal(void) {
     raise(SIGPIPE);
 }
 
-/* Joins the other processes of the job, if there are any. `status` is how the command line was read: where
- * that failed, it did on all ranks, and one of them reports it. */
+/* Joins the other processes of the job, if there are any. `status`: of parsing the command line; a failure
+ * occurs on all ranks, and one of them reports it. */
 static BpStatus join_ranks(char **argv, BpCommandLine *line, BpStatus status, BpError *err) {
     if (line->command == NULL || !line->command->is_shared || line->help) return status;
     const BpStatus joined = bp_comm_begin(argv, &line->comm, status == BP_OK ? err : NULL);
     return status != BP_OK ? status : joined;
 }
 
-/* How it went on all ranks. Does not return when this one failed amid common work. */
+/* Returns the common status of all ranks. Does not return if this one failed during common work. */
 static BpStatus leave_ranks(const BpCommandLine *line, BpStatus status, BpError *err) {
     if (!bp_comm_is_at_work(line->comm)) return bp_comm_all_ok(line->comm, status, err);
     bp_comm_prefix_rank(line->comm, err);
@@ -155,7 +155,7 @@ int main(int argc, char **argv) {
     if (line.comm != NULL) status = leave_ranks(&line, status, &err);
     const int flush_problem = fflush(stdout) == 0 ? 0 : errno;
     const bool left = reader_has_left();
-    /* What else went wrong is still to be told. */
+    /* Other errors are still to be reported. */
     const bool about_output = status == BP_ERR_FILE && err.file[0] == '\0';
     if (left && (status == BP_OK || about_output)) end_by_signal();
     if (status != BP_OK && is_reporter) print_error(&err, status, line.wide);

@@ -1,4 +1,4 @@
-/* write_documents.c: a program of the build: what --help says as manual pages and as completions for shells.
+/* write_documents.c: a program of the build: writes the help as manual pages and as completions for shells.
  *
  * In:    the tables of commands and options.   Out: a folder with manual pages, and files for three shells.
  * Knows: how man(7), bash, zsh and fish write things.   Does not know: which options there are. */
@@ -22,7 +22,7 @@ static int close_file(FILE *file) {
     return fclose(file) == 0 && !failed ? 0 : 1;
 }
 
-/* Whether the command takes the option: its own, and those of all commands. */
+/* Whether the command accepts the option: its own, and those of all commands. */
 static bool takes(const BpCommand *command, BpOption option) {
     return option == BP_OPTION_HELP || bp_option_taken(option, command);
 }
@@ -85,7 +85,7 @@ static void put_paragraphs(const char *text, FILE *out) {
     }
 }
 
-/* What stands in the foot of every page. */
+/* The foot of every page. */
 typedef struct Edition {
     const char *version, *date;
 } Edition;
