@@ -324,7 +324,6 @@ typedef struct Findings {
     bool by_rays;        /* of the render: --caustics on, or as good */
     BpUnseenLight unseen;
     double luminance;                            /* of the picture, roughly */
-    bool lobes_hide_light;                       /* bp_pilot_is_blind() */
     char unknown[sizeof((BpError *)0)->message]; /* why it is not known what is found by chance; "": it is */
 } Findings;
 
@@ -371,11 +370,10 @@ static BpStatus look(const BpCommandLine *line, const BpScene *scene, const BpDe
 }
 
 /* *may_be: whether it is worth to open a device. */
-static BpStatus may_be_unseen(const BpScene *scene, bool *may_be, bool *lobes_hide_light, BpError *err) {
+static BpStatus may_be_unseen(const BpScene *scene, bool *may_be, BpError *err) {
     BpPilotAim aim;
     BP_TRY(bp_pilot_aim(scene, &aim, err));
     *may_be = bp_pilot_is_needed(scene, &aim);
-    *lobes_hide_light = bp_pilot_is_blind(scene, &aim);
     bp_pilot_aim_clear(&aim);
     return BP_OK;
 }
@@ -390,7 +388,7 @@ static void look_for_unseen(const BpCommandLine *line, const BpScene *scene, con
     found->luminance = NAN;
     bool may_be = false;
     if (line->light_sampling == BP_LIGHT_SAMPLING_OFF) return;
-    BpStatus status = may_be_unseen(scene, &may_be, &found->lobes_hide_light, &err);
+    BpStatus status = may_be_unseen(scene, &may_be, &err);
     if (status == BP_OK && may_be && device == NULL) status = bp_setup_devices(line, &devices, &count, &err);
     if (status == BP_OK && may_be) status = look(line, scene, device != NULL ? device : devices, found, &err);
     bp_error_add_remedy(&err, BP_INTERFACE_COMMAND_LINE);
@@ -430,8 +428,6 @@ static void print_unseen(const BpCommandLine *line, const BpScene *scene, const 
                 "no light that samples find by chance only: none is small, or seen or focused by glass or "
                 "mirrors");
     }
-    if (found->lobes_hide_light)
-        fprintf(out, "  %-14s %-4s " BP_HANG "%s\n", "narrow lobes", "yes", BP_LOBES_HIDE_LIGHT);
     if (effects.caustics && found->unknown[0] == '\0' && line->light_sampling == BP_LIGHT_SAMPLING_ON)
         print_caustics(line, found, out);
 }

@@ -13,10 +13,6 @@
 #include <string.h>
 
 #define PI 3.14159265358979323846
-/* Of wider lobes, samples soon find what they send. */
-#define NARROW 0.25
-/* Shapes with such lobes, that the time stays bounded. */
-#define LOOKED_AT_MAX 4096u
 
 /* Whether camera rays may miss the light, though its image is in a pixel. */
 static bool is_small(const BpCamera *camera, const BpPilotLight *light) {
@@ -31,41 +27,6 @@ bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim) {
     bool rare = aim->pair_count > 0;
     for (size_t i = 0; i < aim->light_count; ++i) rare = rare || is_small(&scene->camera, &aim->lights[i]);
     return rare;
-}
-
-/* About how wide the lobe is, in radians, in which a shape that rays to lamps light sends most of what it
- * reflects; 0: it has no such lobe, or it is wide. */
-static double narrow_lobe(const BpMaterial *material) {
-    double width = 0;
-    if (!bp_material_is_lit(material)) return 0;
-    if (material->kind == BP_MATERIAL_METAL) width = material->fuzz;
-    if (material->kind == BP_MATERIAL_ROUGH_METAL || material->kind == BP_MATERIAL_ROUGH_DIELECTRIC)
-        width = material->roughness;
-    if (material->kind == BP_MATERIAL_GLOSSY) width = fmax(material->roughness, BP_LIT_ROUGHNESS_MIN);
-    return width < NARROW ? width : 0;
-}
-
-/* Whether a light, seen from a shape, is smaller than the angle. */
-static bool is_smaller(const BpPilotLight *light, const double center[3], double reach, double angle) {
-    if (light->distant) return light->cap < 1 - cos(angle);
-    return light->radius < angle * (sqrt(bp_distance2(light->place, center)) + reach);
-}
-
-bool bp_pilot_is_blind(const BpScene *scene, const BpPilotAim *aim) {
-    bool any = false;
-    size_t looked_at = 0;
-    for (size_t i = 0; i < scene->material_count; ++i) any = any || narrow_lobe(&scene->materials[i]) > 0;
-    if (!any || aim->light_count == 0) return false;
-    for (size_t i = 0; i < bp_scene_shapes(scene) && looked_at < LOOKED_AT_MAX; ++i) {
-        const double width = narrow_lobe(bp_pilot_material(scene, i));
-        if (!(width > 0)) continue;
-        double center[3];
-        const double reach = bp_pilot_ball(scene, i, center);
-        ++looked_at;
-        for (size_t l = 0; l < aim->light_count; ++l)
-            if (is_smaller(&aim->lights[l], center, reach, width)) return true;
-    }
-    return false;
 }
 
 static bool sums_create(size_t squares, size_t ways, BpPilotSums *sums) {

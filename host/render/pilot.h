@@ -6,10 +6,10 @@
  * camera have the same pilot, whatever the seed, and films of one scene share it.
  *
  * A sample of the picture finds a lamp or a disc by rays to it, where its path stands on a matte surface.
- * What it finds by chance is light that comes to a matte point by way of glass or mirrors, and light that is
- * seen directly or by such ways. If the light is small, that is rare, and as
- * long as it has not happened, the samples' spread does not know of it. A pilot does: some paths from the
- * lights at everything specular, followed to where they are seen; and some camera paths, to see how close
+ * What it finds by chance is light that comes to a matte point by way of glass, mirrors, coats and metal that
+ * is nearly a mirror, and light that is seen directly or by such ways. If the light is small, that is rare,
+ * and as long as it has not happened, the samples' spread does not know of it. A pilot does: some paths from
+ * the lights at everything specular, followed to where they are seen; and some camera paths, to see how close
  * they come to lights. */
 #ifndef BP_RENDER_PILOT_H
 #define BP_RENDER_PILOT_H
@@ -21,11 +21,6 @@
 
 /* Whether the scene has light that a pilot may find, in what bp_pilot_aim() has found. */
 bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim);
-
-/* Whether narrow lobes of metal, rough glass or coats may send light of a light that is smaller than they are
- * to matte points. A ray to the light is sent from there, so a pilot does not follow such paths, but samples
- * find that light seldom. */
-bool bp_pilot_is_blind(const BpScene *scene, const BpPilotAim *aim);
 
 /* *caustics: whether rays to lamps go through focusers too; of BP_CAUSTICS_AUTO it makes one of the others.
  * *unseen is NULL if there is none. */

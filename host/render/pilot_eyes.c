@@ -109,6 +109,33 @@ static void keep_ray(BpPilot *pilot, const BpPilotSegment *segment, const double
         ray->origin[a] = segment->point[a] - (met ? segment->distance * segment->direction[a] : 0);
 }
 
+/* At a narrow lobe, the ray that a smooth surface would have sent on; what stands there, that of the lobe
+ * meets. */
+static void keep_glint(BpPilot *pilot, const BpPilotSegment *segment, const BpPilotSegment *next, uint32_t s,
+                       size_t square, uint64_t way) {
+    const BpScene *scene = pilot->scene;
+    BpPilotTurn turn;
+    bp_pilot_normal(scene, segment, turn.normal);
+    for (int a = 0; a < 3; ++a) turn.leaves[a] = -segment->direction[a];
+    bp_normalize(turn.leaves); /* in double: fuzz has a pole at the rim of its lobe */
+    memcpy(turn.point, segment->point, sizeof turn.point);
+    turn.index = bp_pilot_index_behind(scene, segment, turn.normal);
+    const uint32_t refracts = bp_dot(next->direction, turn.normal) < 0;
+    if (!bp_pilot_turn_smooth(refracts != 0, &turn)) return;
+    BpPilotSegment smooth = *next;
+    const bool met = (next->flags & PILOT_MET) != 0;
+    memcpy(smooth.direction, turn.to_light, sizeof smooth.direction);
+    for (int a = 0; a < 3; ++a)
+        smooth.point[a] = segment->point[a] + (met ? next->distance : 0) * turn.to_light[a];
+    way =
+        bp_hash_bytes(bp_hash_bytes(way, &segment->shape, sizeof segment->shape), &refracts, sizeof refracts);
+    const size_t before = pilot->ray_count;
+    keep_ray(pilot, &smooth, segment->throughput, segment->odds, s + 1, square, segment->shape, 0, way);
+    if (pilot->ray_count == before) return;
+    pilot->rays[before].lobe = true;
+    pilot->rays[before].turn = turn;
+}
+
 /* How far apart paths are that began beside each other, and how fast that grows along them. */
 typedef struct Spread {
     double width, slope;
@@ -143,11 +170,9 @@ static void keep_eye(BpPilot *pilot, const BpPilotSegment *segment, uint32_t s, 
     memcpy(eye->point, segment->point, sizeof eye->point);
     memcpy(eye->throughput, segment->throughput, sizeof eye->throughput);
     bp_pilot_normal(scene, segment, eye->normal);
-    memcpy(eye->axis, eye->normal, sizeof eye->axis);
+    for (int a = 0; a < 3; ++a) eye->outgoing[a] = -segment->direction[a];
+    eye->index = bp_pilot_index_behind(scene, segment, eye->normal);
     const double along = bp_dot(segment->direction, eye->normal);
-    const BpMaterialKind kind = bp_pilot_material_at(scene, segment)->kind;
-    if (kind == BP_MATERIAL_METAL || kind == BP_MATERIAL_ROUGH_METAL)
-        for (int a = 0; a < 3; ++a) eye->axis[a] = segment->direction[a] - 2 * along * eye->normal[a];
     eye->radius = width * sqrt(NEAR_EYES / PI / fmax(-along, 0.1));
     if (eye->radius > 0 && isfinite(eye->radius)) ++pilot->eye_count;
 }
@@ -171,6 +196,9 @@ static void follow_eye(BpPilot *pilot, const BpPilotFlight *flight, uint32_t pat
         spread.width += spread.slope * segment.distance;
         if (bp_pilot_is_rough(scene, &segment)) {
             keep_eye(pilot, &segment, s, square, spread.width);
+            if (bp_pilot_lobe_width(bp_pilot_material_at(scene, &segment)) > 0 &&
+                bp_pilot_segment(flight, path, SEGMENTS, s + 1, &next))
+                keep_glint(pilot, &segment, &next, s, square, way);
             return;
         }
         if (!bp_pilot_is_surface(scene, &segment) || !bp_pilot_segment(flight, path, SEGMENTS, s + 1, &next))

@@ -1,6 +1,7 @@
 /* pilot_join.c: see pilot_join.h. */
 #include "pilot_join.h"
 
+#include "pilot_lobes.h"
 #include "pilot_shapes.h"
 
 #include "base/color.h"
@@ -24,33 +25,6 @@ void bp_pilot_add(BpPilotSums *sums, size_t pixel, const double radiance[3], dou
     sums->mean[pixel] += y * probability;
     sums->square[pixel] += y * y * probability;
     sums->by_way[through] += y * y * probability;
-}
-
-/* Around a mirror direction, as kernels/bsdf/metal.cl explains. */
-static double metal_density(const BpMaterial *material, double cosine) {
-    const double f = material->fuzz, sine2 = fmax(0, 1 - cosine * cosine), h2 = f * f - sine2;
-    if (!(h2 > 0) || cosine <= 0) return 0;
-    const double h = sqrt(h2);
-    if (material->fuzz_shape == BP_FUZZ_BALL) return h * (3 * cosine * cosine + h2) / (2 * PI * f * f * f);
-    return (cosine * cosine + h2) / (2 * PI * f * h);
-}
-
-/* Around a mirror direction: of GGX facets that are tilted by half the angle, wherever they are seen from. */
-static double facet_density(const BpMaterial *material, double cosine) {
-    const double alpha2 = pow(material->roughness, 4), cosine2 = 0.5 * (1 + cosine);
-    const double spread = alpha2 * cosine2 + 1 - cosine2;
-    return alpha2 / (4 * PI * spread * spread);
-}
-
-double bp_pilot_density(const BpMaterial *material, const double axis[3], const double direction[3]) {
-    const double cosine = bp_dot(axis, direction);
-    if (material->kind == BP_MATERIAL_METAL) return metal_density(material, cosine);
-    if (material->kind == BP_MATERIAL_ROUGH_METAL) return facet_density(material, cosine);
-    /* What is glossy counts as its base, by the cosine: its coat is a part of its own, which few paths draw.
-     */
-    if (cosine <= 0) return 0;
-    if (material->scatter == BP_SCATTER_COSINE_CUBED) return 2 * cosine * cosine * cosine / PI;
-    return material->scatter == BP_SCATTER_HEMISPHERE ? 1 / (2 * PI) : cosine / PI;
 }
 
 /* ---- a grid of ends, in levels of cells of a power of two: an end lies in all cells that its radius touches
@@ -137,6 +111,18 @@ static void grid_clear(Grid *grid) {
     free(grid->cells);
 }
 
+/* The density with which a path that ends there would have gone along `direction`. */
+static double density_at(const BpPilotEye *eye, const BpMaterial *material, const double direction[3]) {
+    BpPilotTurn turn = {.index = eye->index};
+    const bool matte = material->kind != BP_MATERIAL_METAL && material->kind != BP_MATERIAL_ROUGH_METAL &&
+                       material->kind != BP_MATERIAL_ROUGH_DIELECTRIC;
+    if (matte) return bp_pilot_density(material, eye->normal, direction);
+    memcpy(turn.normal, eye->normal, sizeof turn.normal);
+    memcpy(turn.leaves, eye->outgoing, sizeof turn.leaves);
+    memcpy(turn.to_light, direction, sizeof turn.to_light);
+    return bp_pilot_lobe_density(material, &turn);
+}
+
 static void join_one(const BpScene *scene, const BpPilotEye *eye, const BpPilotPhoton *photon,
                      uint32_t max_depth, BpPilotSums *sums) {
     double back[3], radiance[3], away2 = 0;
@@ -145,12 +131,16 @@ static void join_one(const BpScene *scene, const BpPilotEye *eye, const BpPilotP
         away2 += (photon->point[a] - eye->point[a]) * (photon->point[a] - eye->point[a]);
         radiance[a] = eye->throughput[a] * photon->radiance[a];
     }
-    const double cosine = bp_dot(back, eye->normal);
+    const BpMaterial *material = bp_pilot_material(scene, eye->shape);
+    double cosine = bp_dot(back, eye->normal), alike = bp_dot(eye->normal, photon->normal);
+    if (cosine < 0 && material->kind == BP_MATERIAL_ROUGH_DIELECTRIC) { /* from behind */
+        cosine = -cosine;
+        alike = -alike;
+    }
     if (away2 > eye->radius * eye->radius || cosine <= 0 || eye->segments + photon->segments > max_depth)
         return;
-    if (!bp_pilot_is_sphere(scene, eye->shape) && bp_dot(eye->normal, photon->normal) < ALIKE) return;
-    const BpMaterial *material = bp_pilot_material(scene, eye->shape);
-    const double density = bp_pilot_density(material, eye->axis, back) / fmax(cosine, COSINE_MIN);
+    if (!bp_pilot_is_sphere(scene, eye->shape) && alike < ALIKE) return;
+    const double density = density_at(eye, material, back) / fmax(cosine, COSINE_MIN);
     const double probability = density * photon->measure / (PI * eye->radius * eye->radius);
     if (probability > 0) bp_pilot_add(sums, eye->pixel, radiance, eye->share * probability, photon->through);
 }

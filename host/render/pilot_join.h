@@ -20,7 +20,8 @@ typedef struct BpPilotEye {
     uint32_t pixel;             /* into the sums; */
     double share;               /* of its samples that this path stands for */
     double point[3], normal[3]; /* the normal is unit, on the side of the path */
-    double axis[3];             /* of the lobe */
+    double outgoing[3];         /* unit, to where the path came from */
+    double index;               /* of glass: behind the surface over before it */
     double throughput[3];       /* behind the point */
     double radius;              /* within which light counts */
     uint32_t shape, object, segments;
@@ -59,9 +60,5 @@ void bp_pilot_add(BpPilotSums *sums, size_t pixel, const double radiance[3], dou
 BpStatus bp_pilot_join(const BpScene *scene, const BpPilotEye *eyes, size_t eye_count,
                        const BpPilotPhoton *photons, size_t photon_count, uint32_t max_depth,
                        BpPilotParts *parts, BpError *err);
-
-/* The density per steradian with which a lobe of the material sends a path along `direction`; `axis`: the
- * normal, or for metal the mirror direction. */
-double bp_pilot_density(const BpMaterial *material, const double axis[3], const double direction[3]);
 
 #endif

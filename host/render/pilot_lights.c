@@ -169,10 +169,24 @@ static BpStatus find_lights(const BpScene *scene, BpPilotAim *aim, BpError *err)
 
 /* ---- pairs ---- */
 
+/* Whether the shape has a lobe that is narrow, and that some light is smaller than such. */
+static bool has_narrow_lobe(const BpScene *scene, const BpPilotAim *aim, size_t shape) {
+    if (!(bp_pilot_lobe_width(bp_pilot_material(scene, shape)) > 0)) return false;
+    double center[3];
+    bp_pilot_ball(scene, shape, center);
+    for (size_t l = 0; l < aim->light_count; ++l)
+        if (bp_pilot_half_angle(&aim->lights[l], center) < BP_PILOT_SMALL) return true;
+    return false;
+}
+
+static bool is_target(const BpScene *scene, const BpPilotAim *aim, size_t shape) {
+    return bp_pilot_is_specular(scene, shape) || has_narrow_lobe(scene, aim, shape);
+}
+
 static BpStatus find_targets(const BpScene *scene, BpPilotAim *aim, BpError *err) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     size_t count = 0;
-    for (size_t i = 0; i < bp_scene_shapes(scene); ++i) count += bp_pilot_is_specular(scene, i);
+    for (size_t i = 0; i < bp_scene_shapes(scene); ++i) count += is_target(scene, aim, i);
     aim->targets = malloc((count > 0 ? count : 1) * sizeof *aim->targets);
     if (aim->targets == NULL)
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for the %zu specular shapes", count);
@@ -183,7 +197,7 @@ static BpStatus find_targets(const BpScene *scene, BpPilotAim *aim, BpError *err
             low[a] = fmin(low[a], center[a] - radius);
             high[a] = fmax(high[a], center[a] + radius);
         }
-        if (bp_pilot_is_specular(scene, i)) aim->targets[aim->target_count++] = (uint32_t)i;
+        if (is_target(scene, aim, i)) aim->targets[aim->target_count++] = (uint32_t)i;
     }
     for (int a = 0; a < 3 && bp_scene_shapes(scene) > 0; ++a) aim->middle[a] = 0.5 * (low[a] + high[a]);
     aim->reach = bp_scene_shapes(scene) > 0 ? 0.5 * sqrt(bp_distance2(low, high)) : 0;
@@ -202,6 +216,8 @@ static double importance(const BpScene *scene, const BpPilotAim *aim, const BpPi
         const double away = fmax(bp_distance2(center, light->place), radius * radius);
         extent = PI * light->radius * light->radius * PI * radius * radius / away;
     }
+    const double width = bp_pilot_lobe_width(bp_pilot_material(scene, aim->targets[pair->target]));
+    if (width > 0) extent *= fmin(1, pow(bp_pilot_half_angle(light, center) / width, 2));
     return light->share * y * y * extent;
 }
 
@@ -249,6 +265,11 @@ static BpStatus make_pairs(const BpScene *scene, BpPilotAim *aim, BpError *err) 
         below += pair->probability;
     }
     return BP_OK;
+}
+
+double bp_pilot_half_angle(const BpPilotLight *light, const double point[3]) {
+    if (light->distant) return sqrt(2 * light->cap);
+    return light->radius / fmax(sqrt(bp_distance2(light->place, point)), light->radius);
 }
 
 bool bp_pilot_is_sampled(const BpScene *scene, const BpPilotLight *light, uint32_t shape, uint32_t vertices) {

@@ -1,12 +1,13 @@
 /* pilot_lights.h: where the paths of a pilot begin: at lights, aimed at what may focus their light.
  *
  * In:    a scene.
- * Out:   its lights, its specular shapes, and beginnings of paths from the ones to the others.
+ * Out:   its lights, its shapes that focus light, and beginnings of paths from the ones to the others.
  * Knows: what a ray to a lamp finds, and what it does not.   Does not know: kernels.
  *
- * A pair is a light and a specular shape: glass, or metal too smooth to be lit by rays to lamps. A path of
- * the pair begins on the light and flies at the shape. It counts only if it meets that shape first, so each
- * path belongs to one pair, whichever shapes overlap. */
+ * A pair is a light and a target: glass, metal too smooth to be lit by rays to lamps, a coat, or what
+ * scatters into a narrow lobe that the light may be smaller than. A path of the pair begins on the light and
+ * flies at the shape. It counts only if it meets that shape first, so each path belongs to one pair,
+ * whichever shapes overlap. */
 #ifndef BP_RENDER_PILOT_LIGHTS_H
 #define BP_RENDER_PILOT_LIGHTS_H
 
@@ -37,7 +38,7 @@ typedef struct BpPilotPair {
 typedef struct BpPilotAim {
     BpPilotLight *lights;
     size_t light_count;
-    uint32_t *targets; /* the specular shapes */
+    uint32_t *targets; /* shapes that scatter into few directions, or nearly */
     size_t target_count;
     BpPilotPair *pairs;
     double *bounds; /* of pairs: the sum of the probabilities before each */
@@ -51,6 +52,9 @@ typedef struct BpPilotStart {
     double measure; /* area x solid angle x cosine for which it stands, over the number of paths; 0: none */
     uint32_t pair;
 } BpPilotStart;
+
+/* The half angle that a light fills, roughly, as seen from `point`, which may be NULL for distant lights. */
+double bp_pilot_half_angle(const BpPilotLight *light, const double point[3]);
 
 /* Whether a ray to the light, sent through focusers, finds it by way of the shape, on which a path has stood
  * so many times and on nothing else: then it is not left to chance. */

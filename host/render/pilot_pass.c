@@ -69,9 +69,18 @@ static void keep_nearest(const Pass *pass, size_t most, Pass *nearest, size_t *c
     nearest[place] = *pass;
 }
 
+/* Around the light, the solid angle of mirror directions in which a lobe shows it, and how bright. */
+static double glint_extent(const BpScene *scene, const BpPilotLight *lights, size_t light_count,
+                           const BpPilotLight *light, const BpPilotRay *ray, double *glint) {
+    const BpMaterial *material = bp_pilot_material(scene, ray->through);
+    double mean;
+    *glint = bp_pilot_glint_around(scene, lights, light_count, light, material, &ray->turn, &mean);
+    return *glint > 0 ? mean / *glint : 0;
+}
+
 /* The rays that have come one way, and one light. */
-static void pass_group(const BpScene *scene, const BpPilotLight *light, const BpPilotRay *rays, size_t count,
-                       BpPilotSums *sums) {
+static void pass_group(const BpScene *scene, const BpPilotLight *lights, size_t light_count,
+                       const BpPilotLight *light, const BpPilotRay *rays, size_t count, BpPilotSums *sums) {
     Pass nearest[COUNT], pass;
     size_t most = count / GROUP, found = 0;
     if (most > COUNT) most = COUNT;
@@ -86,12 +95,15 @@ static void pass_group(const BpScene *scene, const BpPilotLight *light, const Bp
         for (int a = 0; a < 3; ++a) aside[a] += nearest[i].off[a] / (double)(most - 1);
     const double counted = (double)(most - 1);
     if (bp_dot(aside, aside) > fmax(ASIDE2 + ASIDE2_OF_ONE / counted, FEW / counted) * near2) return;
+    double glint = 1, extent = 0;
+    if (rays[0].lobe) extent = glint_extent(scene, lights, light_count, light, nearest[0].ray, &glint);
     for (size_t i = 0; i < most - 1; ++i) { /* the last one tells how far, and does not count */
         const BpPilotRay *ray = nearest[i].ray;
         double radiance[3];
-        if (nearest[i].size2 >= near2) return; /* rays meet it often */
-        for (int c = 0; c < 3; ++c) radiance[c] = ray->carried[c] * light->radiance[c];
-        bp_pilot_add(sums, ray->pixel, radiance, ray->share * nearest[i].size2 / near2,
+        const double size2 = rays[0].lobe ? fmin(extent / PI, near2) : nearest[i].size2;
+        if (size2 >= near2 && !rays[0].lobe) return; /* rays meet it often */
+        for (int c = 0; c < 3; ++c) radiance[c] = glint * ray->carried[c] * light->radiance[c];
+        bp_pilot_add(sums, ray->pixel, radiance, ray->share * size2 / near2,
                      bp_pilot_way(scene, ray->through));
     }
 }
@@ -106,7 +118,8 @@ void bp_pilot_pass(const BpScene *scene, bool focused, const BpPilotLight *light
             if (lights[l].share > 1) continue;
             const bool found = focused && ray->vertices > 0 &&
                                bp_pilot_is_sampled(scene, &lights[l], ray->through, ray->vertices);
-            pass_group(scene, &lights[l], ray, end - first, found ? &parts->focused : &parts->chance);
+            pass_group(scene, lights, light_count, &lights[l], ray, end - first,
+                       found ? &parts->focused : &parts->chance);
         }
     }
 }

@@ -4,6 +4,9 @@
  * Out:   for each pixel, how probably a sample meets a light.
  * Knows: densities of directions.   Does not know: kernels, how paths were made.
  *
+ * What scatters into a narrow lobe has, for lights that are smaller, a glint where a mirror would show the
+ * light.
+ *
  * Rays that have come the same way (by the same shapes, reflected or let through alike) spread smoothly over
  * directions, so how many of them pass near a light tells how many meet it. Near means: as near as the
  * COUNT-th of them passes (D. O. Loftsgaarden and C. P. Quesenberry, "A nonparametric estimate of a
@@ -13,6 +16,7 @@
 
 #include "pilot_join.h"
 #include "pilot_lights.h"
+#include "pilot_lobes.h"
 
 /* A ray, and where it ends. */
 typedef struct BpPilotRay {
@@ -24,6 +28,8 @@ typedef struct BpPilotRay {
     uint32_t through;                       /* the first that it has met */
     uint32_t vertices;                      /* of its path, all on `through`; 0: on other shapes too */
     uint32_t number;                        /* none has another's */
+    bool lobe;                              /* it begins in a narrow lobe, around this direction */
+    BpPilotTurn turn;                       /* there */
 } BpPilotRay;
 
 /* `focused`: rays to lamps may go through focusers

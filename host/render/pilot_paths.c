@@ -141,6 +141,13 @@ void bp_pilot_normal(const BpScene *scene, const BpPilotSegment *segment, double
     for (int a = 0; a < 3; ++a) normal[a] = -normal[a];
 }
 
+double bp_pilot_index_behind(const BpScene *scene, const BpPilotSegment *segment, const double normal[3]) {
+    double outward[3];
+    const double inside = bp_pilot_index_inside(scene, segment->shape);
+    bp_pilot_outward(scene, segment->shape, segment->point, segment->time, outward);
+    return bp_dot(normal, outward) > 0 ? inside : 1 / inside;
+}
+
 const BpMaterial *bp_pilot_material_at(const BpScene *scene, const BpPilotSegment *segment) {
     return bp_pilot_material(scene, segment->shape);
 }

@@ -47,6 +47,8 @@ double bp_pilot_carried(const BpPilotFlight *flight, uint32_t path, uint32_t seg
 
 /* The unit normal of the shape that a segment has met, at its end, on the side that it came from. */
 void bp_pilot_normal(const BpScene *scene, const BpPilotSegment *segment, double normal[3]);
+/* The refraction index behind that surface over the one on the side of `normal`. */
+double bp_pilot_index_behind(const BpScene *scene, const BpPilotSegment *segment, const double normal[3]);
 const BpMaterial *bp_pilot_material_at(const BpScene *scene, const BpPilotSegment *segment);
 /* It ends at a surface that does something to light, be it specular or rough: not at the boundary of a medium
  * alone. */

@@ -4,6 +4,7 @@
  * Out:   the light that comes to rough points, and the measure for which it stands.
  * Knows: what surfaces do to beams of light, and to paths that come the other way.
  * Does not know: where the camera stands. */
+#include "pilot_lobes.h"
 #include "pilot_shapes.h"
 #include "pilot_state.h"
 
@@ -29,13 +30,15 @@ static double transmitted(const BpScene *scene, const BpPilotSegment *segment, c
     double normal[3], outward[3];
     bp_pilot_normal(scene, segment, normal);
     const double before = -bp_dot(segment->direction, normal), behind = -bp_dot(next->direction, normal);
-    if (material->kind != BP_MATERIAL_DIELECTRIC || behind <= 0) return 1; /* reflected */
+    const bool glass =
+        material->kind == BP_MATERIAL_DIELECTRIC || material->kind == BP_MATERIAL_ROUGH_DIELECTRIC;
+    if (!glass || behind <= 0) return 1; /* reflected */
     bp_pilot_outward(scene, segment->shape, segment->point, segment->time, outward);
     const double inside = bp_pilot_index_inside(scene, segment->shape);
     const double ratio =
         bp_dot(normal, outward) > 0 ? 1 / inside : inside; /* index before over index behind */
     double measure = ratio * ratio;
-    if (material->fresnel == BP_FRESNEL_SCHLICK && ratio != 1) {
+    if (material->kind == BP_MATERIAL_DIELECTRIC && material->fresnel == BP_FRESNEL_SCHLICK && ratio != 1) {
         const double light = 1 - schlick(fmin(before, 1), ratio), path = 1 - schlick(fmin(behind, 1), ratio);
         measure *= light > 1e-6 ? path / light : 0;
     }
@@ -46,13 +49,48 @@ static double transmitted(const BpScene *scene, const BpPilotSegment *segment, c
 static double scattered(const BpScene *scene, const BpPilotSegment *segment, const BpPilotSegment *next) {
     const BpMaterial *material = bp_pilot_material_at(scene, segment);
     double normal[3], back[3];
-    if (material->kind == BP_MATERIAL_METAL || material->scatter == BP_SCATTER_LAMBERTIAN) return 1;
+    if (material->kind == BP_MATERIAL_ROUGH_DIELECTRIC) return transmitted(scene, segment, next);
+    if (material->kind != BP_MATERIAL_METAL && material->scatter == BP_SCATTER_LAMBERTIAN) return 1;
     bp_pilot_normal(scene, segment, normal);
     for (int a = 0; a < 3; ++a) back[a] = -segment->direction[a];
     const double arrives = bp_dot(back, normal), leaves = bp_dot(next->direction, normal);
+    if (material->kind == BP_MATERIAL_METAL) return leaves / arrives; /* the same density both ways */
     const double drawn = bp_pilot_density(material, normal, next->direction);
     if (!(arrives > 0 && leaves > 0 && drawn > 0)) return 0;
     return bp_pilot_density(material, normal, back) / arrives * leaves / drawn;
+}
+
+/* Light that has come straight to a narrow lobe: what a ray to it would bring, over what the light does. */
+static double glints(const BpPilot *pilot, const BpPilotLight *light, const BpPilotSegment *segment,
+                     const BpPilotSegment *next, double *measure) {
+    const BpScene *scene = pilot->scene;
+    const BpMaterial *material = bp_pilot_material_at(scene, segment);
+    BpPilotTurn turn;
+    bp_pilot_normal(scene, segment, turn.normal);
+    const double side = bp_dot(next->direction, turn.normal) < 0 ? -1 : 1;
+    memcpy(turn.point, segment->point, sizeof turn.point);
+    memcpy(turn.leaves, next->direction, sizeof turn.leaves);
+    for (int a = 0; a < 3; ++a) {
+        turn.normal[a] *= side;
+        turn.to_light[a] = -segment->direction[a];
+    }
+    bp_normalize(turn.leaves); /* in double: fuzz has a pole at the rim of its lobe */
+    bp_normalize(turn.to_light);
+    turn.index = bp_pilot_index_behind(scene, segment, turn.normal);
+    const BpPilotAim *aim = pilot->aim;
+    double mean, part = bp_pilot_glint(scene, aim->lights, aim->light_count, light, material, &turn, &mean);
+    if (!(part > 0)) return *measure = 0;
+    const double arrives = fabs(bp_dot(turn.to_light, turn.normal));
+    const double leaves = bp_dot(turn.leaves, turn.normal);
+    *measure *= transmitted(scene, segment, next);
+    /* Fuzz has the same density both ways, so it is not reciprocal. */
+    if (material->kind == BP_MATERIAL_METAL) *measure *= leaves / arrives;
+    /* The picture's path chooses the coat by its reflectance where that path comes from. */
+    if (material->kind == BP_MATERIAL_GLOSSY)
+        part *= bp_pilot_reflectance(arrives, material->refraction_index) /
+                bp_pilot_reflectance(leaves, material->refraction_index);
+    *measure /= part;
+    return part;
 }
 
 /* One path from a light, which counts where it comes to rough points. */
@@ -66,17 +104,24 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
     uint32_t deposits = 0, vertices = 0; /* specular, up to the first rough point */
     bool aimed = false, alone = true;    /* all of them are the target's */
     bool focused = false;
+    double part = 1; /* of the light's radiance */
     BpPilotSegment segment, next;
     for (uint32_t s = 0; bp_pilot_segment(flight, path, BP_PILOT_SEGMENTS_MAX, s, &segment) && measure > 0;
          ++s) {
         if ((segment.flags & (PILOT_MET | PILOT_IN_MEDIUM)) != PILOT_MET) return;
         if (!bp_pilot_is_surface(scene, &segment)) continue;
         if (!aimed && segment.shape != target) return;
+        const bool rough = bp_pilot_is_rough(scene, &segment), lobe = rough && !aimed;
         aimed = true;
-        const bool rough = bp_pilot_is_rough(scene, &segment);
         if (!rough && deposits == 0) {
             ++vertices;
             alone = alone && segment.shape == target;
+        }
+        if (lobe) {
+            alone = false;
+            if (!bp_pilot_segment(flight, path, BP_PILOT_SEGMENTS_MAX, s + 1, &next)) return;
+            part = glints(pilot, light, &segment, &next, &measure);
+            continue;
         }
         if (rough && deposits == 0) focused = alone && bp_pilot_is_sampled(scene, light, target, vertices);
         if (rough) {
@@ -91,7 +136,7 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
             memcpy(photon->point, segment.point, sizeof photon->point);
             memcpy(photon->direction, segment.direction, sizeof photon->direction);
             bp_pilot_normal(scene, &segment, photon->normal);
-            for (int c = 0; c < 3; ++c) photon->radiance[c] = light->radiance[c] * carried[c];
+            for (int c = 0; c < 3; ++c) photon->radiance[c] = part * light->radiance[c] * carried[c];
             if (++deposits == BP_PILOT_DEPOSITS) return;
         }
         if (!bp_pilot_segment(flight, path, BP_PILOT_SEGMENTS_MAX, s + 1, &next)) return;

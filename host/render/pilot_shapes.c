@@ -65,12 +65,24 @@ void bp_pilot_outward(const BpScene *scene, size_t shape, const double point[3],
 }
 
 double bp_pilot_index_inside(const BpScene *scene, size_t shape) {
-    return bp_pilot_is_sphere(scene, shape) ? bp_sphere_refraction_index(scene, shape)
-                                            : bp_pilot_material(scene, shape)->refraction_index;
+    const double index = bp_pilot_material(scene, shape)->refraction_index;
+    const bool bubble = bp_pilot_is_sphere(scene, shape) && scene->spheres[shape].radius < 0;
+    return bubble ? 1 / index : index;
 }
 
 bool bp_pilot_is_specular(const BpScene *scene, size_t shape) {
     const BpMaterial *const material = bp_pilot_material(scene, shape);
     return material->kind != BP_MATERIAL_INTERFACE &&
            (bp_material_types[material->kind].traits & BP_SCATTERS) != 0 && !bp_material_is_lit(material);
+}
+
+double bp_pilot_lobe_width(const BpMaterial *material) {
+    double width = 0;
+    if (!bp_material_is_lit(material)) return 0;
+    if (material->kind == BP_MATERIAL_METAL) width = material->fuzz;
+    if (material->kind == BP_MATERIAL_ROUGH_METAL || material->kind == BP_MATERIAL_ROUGH_DIELECTRIC)
+        width = 2 * material->roughness * material->roughness;
+    if (material->kind == BP_MATERIAL_GLOSSY)
+        width = 2 * pow(fmax(material->roughness, BP_LIT_ROUGHNESS_MIN), 2);
+    return width < BP_PILOT_NARROW ? width : 0;
 }

@@ -39,6 +39,15 @@ double bp_pilot_index_inside(const BpScene *scene, size_t shape);
 /* The shape scatters into few directions only, so that no ray to a lamp lights it. */
 bool bp_pilot_is_specular(const BpScene *scene, size_t shape);
 
+/* Lobes of this half angle, in radians, and more send light to so many places that samples soon find it; and
+ * so does any lobe with the light of lights that fill more than BP_PILOT_SMALL. */
+#define BP_PILOT_NARROW 0.75
+#define BP_PILOT_SMALL 0.125
+
+/* About the half angle, in radians, into which a material sends most of what it reflects, if rays to lamps
+ * light it; 0: it has no such lobe, or it is BP_PILOT_NARROW or wider. */
+double bp_pilot_lobe_width(const BpMaterial *material);
+
 /* Whose points count as neighbours: a sphere is its own, and all other shapes are one. */
 static inline uint32_t bp_pilot_object(const BpScene *scene, uint32_t shape) {
     return bp_pilot_is_sphere(scene, shape) ? shape : (uint32_t)scene->sphere_count;

@@ -148,7 +148,6 @@ static BpStatus create(const BpScene *scene, const BpRenderOptions *options, con
     if (options->light_sampling == BP_LIGHT_SAMPLING_ON && !options->samples_only) {
         BP_TRY_GOTO(status, bp_pilot_aim(scene, &made->aim, err), failed);
         made->has_pilot = bp_pilot_is_needed(scene, &made->aim);
-        made->lobes_hide_light = bp_pilot_is_blind(scene, &made->aim);
         if (!made->has_pilot) bp_pilot_aim_clear(&made->aim);
     }
     const Opening opening = {.devices = devices, .open = open};
@@ -517,7 +516,6 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
         report->device_bytes += worker->scene_bytes + worker->picture_bytes +
                                 (uint64_t)worker->samples_capacity * 4 * worker->real_size;
     }
-    report->lobes_hide_light = render->lobes_hide_light;
     report->samples = bp_render_pixel_samples(render);
     report->resumed_samples = render->base_samples;
     if (render->film != NULL) {

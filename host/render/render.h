@@ -32,7 +32,6 @@ typedef struct BpRenderReport {
     uint64_t scene_bytes;        /* of these, the scene */
     uint64_t resumed_samples;    /* of `samples`, those that were there before */
     uint64_t samples, segments, truncated_paths, invalid_samples, shadow_rays;
-    bool lobes_hide_light; /* the noise may lack light that narrow lobes send on: bp_pilot_is_blind() */
     uint64_t not_finite_samples, negative_samples, out_of_range_samples; /* of the invalid ones */
 } BpRenderReport;
 

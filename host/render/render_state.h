@@ -35,10 +35,9 @@ struct BpRender {
     uint64_t base_samples; /* pixel samples in it */
     uint64_t goal_samples; /* where a stop rule ends it; 0: there is no such rule */
     double goal_error;
-    bool ended;            /* it has reached that */
-    bool lobes_hide_light; /* bp_pilot_is_blind() */
-    bool has_pilot;        /* its programs have one: there may be light that samples find by chance only */
-    BpPilotAim aim;        /* of the pilot, until it has run */
+    bool ended;     /* it has reached that */
+    bool has_pilot; /* its programs have one: there may be light that samples find by chance only */
+    BpPilotAim aim; /* of the pilot, until it has run */
     bool pilot_done;
     BpUnseen *unseen;    /* what it has found; NULL: nothing */
     BpUnseenLight pilot; /* the same as text */

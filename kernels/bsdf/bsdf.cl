@@ -102,6 +102,9 @@ typedef struct BsdfSample {
 #if SAMPLES_LAMPS
     Lobe lobe; /* that the direction was drawn from */
 #endif
+#if PILOT
+    vreal odds; /* how much more often a picture's path would choose the same; a part of the weight */
+#endif
 } BsdfSample;
 
 /* A path that continues along `direction`, on the side from which it came. */
@@ -111,6 +114,9 @@ static BsdfSample bsdf_sample_reflected(const Surface *surface, Vec3 direction) 
     sample.weight = surface->albedo;
     sample.scattered = vbool_all;
     sample.transmitted = vbool_none;
+#if PILOT
+    sample.odds = splat(1);
+#endif
 #if SAMPLES_LAMPS
     sample.lobe.axis = surface->normal;
 #if EFFECT_METAL

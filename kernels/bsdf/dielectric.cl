@@ -69,7 +69,8 @@ static BsdfSample dielectric_sample(const Surface *surface, SampleKey key, vuint
     if (surface->evenly) {
         const vreal share = choose(by_chance, divide(reflectance, odds_of_reflection), divide(splat(1) - reflectance, splat(1) - odds_of_reflection));
         const vbool sure = total | matched | vbool_of_uint(odds_of_reflection == reflectance);
-        sample.weight = choose3(sure, sample.weight, scale3(share, sample.weight));
+        sample.odds = choose(sure, sample.odds, share);
+        sample.weight = scale3(sample.odds, sample.weight);
     }
 #endif
     return sample;

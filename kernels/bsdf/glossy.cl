@@ -84,10 +84,20 @@ static BsdfSample choose_sample(vbool mask, BsdfSample a, BsdfSample b); /* scat
 
 static BsdfSample glossy_sample(const Surface *surface, SampleKey key, vuint bounce) {
     const vreal co = coat_cosine(scale3(splat(-1), surface->incoming), surface->normal);
-    const vbool reflects = sample_1d(key, bounce + BOUNCE_CHOICE) < coat_reflects(co, surface->refraction_index);
-    const BsdfSample base = glossy_base_sample(surface, key, bounce, vbool_not(reflects));
-    if (!any_lane(reflects)) return base;
-    return choose_sample(reflects, glossy_coat_sample(surface, key, bounce), base);
+    const vreal reflectance = coat_reflects(co, surface->refraction_index);
+    vreal odds_of_coat = reflectance;
+#if PILOT
+    if (surface->evenly) odds_of_coat = fma(R(0.5), reflectance, splat(R(0.25)));
+#endif
+    const vbool reflects = sample_1d(key, bounce + BOUNCE_CHOICE) < odds_of_coat;
+    BsdfSample sample = glossy_base_sample(surface, key, bounce, vbool_not(reflects));
+    if (any_lane(reflects)) sample = choose_sample(reflects, glossy_coat_sample(surface, key, bounce), sample);
+#if PILOT
+    if (!surface->evenly) return sample;
+    sample.odds = choose(reflects, divide(reflectance, odds_of_coat), divide(splat(1) - reflectance, splat(1) - odds_of_coat));
+    sample.weight = scale3(sample.odds, sample.weight);
+#endif
+    return sample;
 }
 
 #if SAMPLES_LAMPS

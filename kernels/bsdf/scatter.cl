@@ -50,6 +50,9 @@ static BsdfSample choose_sample(vbool mask, BsdfSample a, BsdfSample b) {
 #if SAMPLES_LAMPS
     chosen.lobe = choose_lobe(mask, &a.lobe, &b.lobe);
 #endif
+#if PILOT
+    chosen.odds = choose(mask, a.odds, b.odds);
+#endif
     return chosen;
 }
 
@@ -110,6 +113,15 @@ static vbool is_phase(const Lobe *lobe) { return vbool_of_uint(lobe->kind == spl
 
 /* Rays to lamps light a vertex that has this lobe. */
 static vbool is_lit_lobe(const Lobe *lobe) { return vbool_of_uint(lobe->kind < splat_uint(LOBE_NONE)); }
+
+#if PILOT
+/* Those that lie around the direction of a mirror, or of refraction. */
+static vbool is_narrow_lobe(const Lobe *lobe) {
+    return is_fuzzy(lobe) | vbool_of_uint(lobe->kind == splat_uint(LOBE_ROUGH_METAL)) |
+           vbool_of_uint(lobe->kind == splat_uint(LOBE_GLOSSY_COAT)) |
+           vbool_of_uint(lobe->kind == splat_uint(LOBE_ROUGH_DIELECTRIC));
+}
+#endif
 
 /* Per steradian; 0 for LOBE_NONE; not of LOBE_PIXEL (focusers.cl). `drawn`: `direction` was drawn from the lobe. */
 static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {

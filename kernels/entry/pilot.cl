@@ -34,6 +34,14 @@ static vbool stands_lit(const Path *path, vbool moving) {
 #endif
 }
 
+/* Those of them whose lobe is narrow, so that light may find few ways on from there. */
+static vbool stands_narrowly_lit(const Path *path, vbool lit) {
+#if SAMPLES_LAMPS
+    return lit & is_narrow_lobe(&path->lobe);
+#else
+    return vbool_none;
+#endif
+}
 
 /* One segment of one lane. */
 static void store_segment(const LaneReals *values, uint lane, __global real *records) {
@@ -41,7 +49,7 @@ static void store_segment(const LaneReals *values, uint lane, __global real *rec
 }
 
 /* `numbers`: a pixel and a sample for each path. `starts`: only if not `from_camera`. A camera's path ends at the first
- * vertex that a ray to a lamp can light, another if its first is one. */
+ * vertex with a wide lobe that a ray to a lamp can light, another if its first is one. */
 __kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segments, uint from_camera,
                                     __global const uint *numbers, __global const real *starts, __global real *records,
                                     __global uint *marks) {
@@ -102,6 +110,6 @@ __kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segme
                 PILOT_TRACED | (is_met >> lane & 1u) * PILOT_MET | (goes_on >> lane & 1u) * PILOT_GOES_ON | (is_lit >> lane & 1u) * PILOT_LIT |
                 (in_medium >> lane & 1u) * PILOT_IN_MEDIUM;
         }
-        if (from_camera || s == 0) path.alive = path.alive & vbool_not(lit);
+        if (from_camera || s == 0) path.alive = path.alive & (vbool_not(lit) | stands_narrowly_lit(&path, lit));
     }
 }

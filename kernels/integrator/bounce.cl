@@ -22,7 +22,7 @@ static void trace_bounce(const Scene *scene, Path *path) {
     see_surface(scene, &hit, met, &vertex, path);
     surface_set_odds(path, &vertex.surface);
     const BsdfSample bsdf_sample = scatter_folded(&vertex.surface, path->key, first_dimension(path->depth - 1u));
-    path_keep_odds(path, met, &vertex.surface, &bsdf_sample);
+    path_keep_odds(path, met, &bsdf_sample);
     follow_chain(scene, path, met, &hit, &bsdf_sample);
     path_scatter(path, met, &vertex.point, hit.slot, hit.enters, &bsdf_sample);
     path_light(path, met & is_vertex(&vertex.surface), &bsdf_sample.lobe, scene->max_depth);

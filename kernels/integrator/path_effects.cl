@@ -46,15 +46,13 @@ static void path_none_odds(Path *path) {
 
 static void surface_set_odds(const Path *path, Surface *surface) { surface->evenly = path->evenly; }
 
-/* Clear glass takes nothing away, so the odds are all that its weight is for. */
-static void path_keep_odds(Path *path, vbool met, const Surface *surface, const BsdfSample *bsdf_sample) {
-    const vbool by_odds = met & has_kind(surface, KIND_DIELECTRIC);
-    if (path->evenly) path->odds = choose(by_odds, path->odds * bsdf_sample->weight.x, path->odds);
+static void path_keep_odds(Path *path, vbool met, const BsdfSample *bsdf_sample) {
+    path->odds = choose(met, path->odds * bsdf_sample->odds, path->odds);
 }
 #else
 #define path_none_odds(path)
 #define surface_set_odds(path, surface)
-#define path_keep_odds(path, met, surface, bsdf_sample)
+#define path_keep_odds(path, met, bsdf_sample)
 #endif
 
 #if WEIGHTED_LOBES

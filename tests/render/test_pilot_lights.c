@@ -450,21 +450,25 @@ static void lights_and_targets(void **state) {
     material->fuzz = BP_LIT_FUZZ_MIN * 0.99;
     const uint32_t brushed = built_material(&built, BP_MATERIAL_METAL, 1, &material);
     material->fuzz = BP_LIT_FUZZ_MIN;
+    const uint32_t coated = built_material(&built, BP_MATERIAL_GLOSSY, 1, NULL);
+    const uint32_t fuzzy = built_material(&built, BP_MATERIAL_METAL, 1, &material);
+    material->fuzz = 0.8; /* so wide that samples soon find what it sends */
     const uint32_t matte = built_material(&built, BP_MATERIAL_LAMBERTIAN, 1, NULL);
     const uint32_t edge = built_material(&built, BP_MATERIAL_INTERFACE, 1, NULL);
     const uint32_t normals = built_material(&built, BP_MATERIAL_NORMALS, 1, NULL);
     const uint32_t lamp = lamp_of(&built, 1);
     const struct {
         uint32_t material;
-        bool specular;
-    } all[] = {{glass, true},  {mirror, true}, {polished, true}, {brushed, false},
-               {matte, false}, {edge, false},  {normals, false}, {lamp, false}};
+        bool specular, target;
+    } all[] = {{glass, true, true},     {mirror, true, true},  {polished, true, true}, {brushed, false, true},
+               {coated, false, true},   {fuzzy, false, false}, {matte, false, false},  {edge, false, false},
+               {normals, false, false}, {lamp, false, false}};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i)
         built_sphere(&built, 3 * (double)i, 0, 0, 1, all[i].material);
     size_t targets = 0;
     for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i) {
         assert_int_equal(bp_pilot_is_specular(&built.scene, i), all[i].specular);
-        targets += all[i].specular;
+        targets += all[i].target;
     }
     add_disc(&built, 0, 1, 0, 1);
     add_disc(&built, 0, 1, 0, 1); /* a dark one is no light */

@@ -8,7 +8,7 @@
 
 typedef struct BuiltScene {
     BpScene scene; /* points into the arrays below: pass it on by address, do not copy it */
-    BpMaterial materials[8];
+    BpMaterial materials[16];
     BpSphere spheres[64];
     char empty[1];
 } BuiltScene;

@@ -57,6 +57,44 @@ class Means(cli.ProgramTest):
                                "discs": [{"direction": direction, "half_angle": half_angle, "radiance": [10, 10, 10]}]},
                 "materials": materials, "spheres": spheres}
 
+    def below_the_horizon(self, ball, radius=0.15):
+        """A floor that curves away from a lamp, and a ball above that sends it light; the camera sees the floor alone."""
+        return {"camera": {"image_width": 24, "aspect_ratio": 1, "samples_per_pixel": 64, "max_depth": 3, "lookfrom": [0, 0.9, -3], "lookat": [0.2, 0, 0],
+                           "vfov": 18},
+                "background": {"bottom": [0, 0, 0], "top": [0, 0, 0]},
+                "materials": {"floor": FLOOR, "ball": ball, "lamp": lamp(100)},
+                "spheres": [{"center": [0, -10, 0], "radius": 10, "material": "floor"}, {"center": [0, 1.5, 0], "radius": 0.5, "material": "ball"},
+                            {"center": [4, -0.62, 0], "radius": radius, "material": "lamp"}]}
+
+    def test_light_of_narrow_lobes(self):
+        """Rays are sent to the lamp from there, but which of the floor's rays come there is left to chance."""
+        white = {"type": "metal", "albedo": [1, 1, 1]}
+        self.compare(self.below_the_horizon({**white, "fuzz": 0.2, "fuzz_shape": "ball"}), 2048)
+        self.compare(self.below_the_horizon({**white, "roughness": 0.25}), 2048)
+        self.compare(self.below_the_horizon({**white, "fuzz": 0.15}), 2048, within=0.25)  # the density has a pole, which samples find seldom
+
+    def test_light_of_coats(self):
+        for roughness in (0, 0.3):
+            self.compare(self.below_the_horizon({"type": "glossy", "albedo": [0, 0, 0], "roughness": roughness, "refraction_index": 3}, 0.25), 4096, within=0.25)
+
+    def test_light_through_rough_glass(self):
+        """From a lamp straight above the ball, that also reflects; the lamp lights the floor, too."""
+        document = self.below_the_horizon({"type": "dielectric", "refraction_index": 1.5, "roughness": 0.25}, 0.1)
+        document["camera"]["max_depth"] = 4
+        document["spheres"][2]["center"] = [0.3, 3.5, 0]
+        without = json.loads(json.dumps(document))
+        without["materials"]["ball"] = BLACK
+        self.compare(document, 1024, without)
+
+    def test_glints(self):
+        """Of a lamp that a ball shows the camera: smaller than a pixel."""
+        for ball in ({"type": "metal", "albedo": [1, 1, 1], "fuzz": 0.05, "fuzz_shape": "ball"}, {"type": "metal", "albedo": [1, 1, 1], "roughness": 0.2}):
+            document = self.below_the_horizon(ball, 0.1)
+            document["camera"].update({"lookfrom": [1, 3, -8], "lookat": [0, 1.5, 0], "vfov": 30, "image_width": 16, "max_depth": 2})
+            document["materials"]["floor"] = BLACK
+            document["spheres"][2]["center"] = [4, 3, -3]
+            self.compare(document, 16384, within=0.3)
+
     def test_glass_by_schlick(self):
         """What the book's reflectance makes of grazing light differs between both ways through a surface."""
         self.compare(self.coated(GLASS, FLOOR, [1, 0.25, 0]), 1024)

@@ -207,7 +207,6 @@ void bp_run_print_summary(const BpCommandLine *line, const BpRunResult *result, 
            bp_format_count((double)own / tracing, rate, sizeof rate),
            bp_format_seconds(bp_clock_seconds() - result->times.start, all, sizeof all));
     say_unseen(line, result);
-    if (report->lobes_hide_light) bp_say(line, "%s", BP_LOBES_HIDE_LIGHT);
     /* Half the noise takes four times the samples. */
     const double more = own > 0 ? 3.0 * tracing * (double)report->samples / (double)own : NAN;
     if (result->claim.nrmse > 0.0 && own > 0)

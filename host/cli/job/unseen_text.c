@@ -51,10 +51,14 @@ static void print_ways(const BpScene *scene, const BpUnseenLight *light, FILE *o
     if (parts + light->direct < 1 - 2 * PART_MIN) fputs(", and others like them", out);
 }
 
-static bool any_of_kind(const BpScene *scene, const BpUnseenLight *light, BpMaterialKind kind) {
+static bool is_mirror(const BpMaterial *material) {
+    return material->kind == BP_MATERIAL_METAL && !bp_material_is_lit(material);
+}
+
+static bool any_mirror(const BpScene *scene, const BpUnseenLight *light) {
     for (size_t i = 0; i < named_spheres(light); ++i)
-        if (scene->materials[scene->spheres[light->spheres[i]].material].kind == kind) return true;
-    return light->triangles >= PART_MIN && scene->materials[light->triangle_material].kind == kind;
+        if (is_mirror(&scene->materials[scene->spheres[light->spheres[i]].material])) return true;
+    return light->triangles >= PART_MIN && is_mirror(&scene->materials[light->triangle_material]);
 }
 
 void bp_unseen_print(const BpScene *scene, const BpUnseenLight *light, double luminance, bool caustics,
@@ -73,8 +77,7 @@ void bp_unseen_print(const BpScene *scene, const BpUnseenLight *light, double lu
         return;
     }
     fprintf(out, " What helps: %slarger lamps or discs", caustics ? "--caustics auto, " : "");
-    if (any_of_kind(scene, light, BP_MATERIAL_METAL))
-        fputs(", a fuzz of 1/64 or a roughness of 1/16 for mirrors", out);
+    if (any_mirror(scene, light)) fputs(", a fuzz of 1/64 or a roughness of 1/16 for mirrors", out);
     fputs(", or many more samples.", out);
 }
 

@@ -10,11 +10,6 @@
 #include <jansson.h>
 #include <stdio.h>
 
-/* Of a scene for which bp_pilot_is_blind(). */
-#define BP_LOBES_HIDE_LIGHT                                                                                  \
-    "light of small lamps that rough metal, rough glass or coats throw on matte surfaces is in the noise "   \
-    "only once samples have found it"
-
 /* "About 5 % of the light comes by way of spheres[1] (glass), and one sample in 1.1 million finds it." and
  * what helps. `luminance`: the mean of the picture; `caustics`: --caustics auto or on may find some of it. */
 void bp_unseen_print(const BpScene *scene, const BpUnseenLight *light, double luminance, bool caustics,
