@@ -110,16 +110,22 @@ static double chosen(const BpScene *scene, const BpPilotLight *lights, size_t li
     return sum > 0 && own > 0 ? own / sum : 1;
 }
 
-double bp_pilot_glint(const BpScene *scene, const BpPilotLight *lights, size_t light_count,
-                      const BpPilotLight *light, const BpMaterial *material, const BpPilotTurn *turn,
-                      double *mean) {
+/* The mean of squares over the mean, where a light is chosen with the probability. */
+static double glint(const BpScene *scene, const BpPilotLight *light, double probability,
+                    const BpMaterial *material, const BpPilotTurn *turn, double *mean) {
     *mean = bp_pilot_lobe_density(material, turn) * bp_pilot_solid_angle(scene, light, turn->point);
     if (!(*mean > 0)) return *mean = 0;
-    const double probability = chosen(scene, lights, light_count, light, material, turn);
     /* A ray that is sent to the light, with the probability p, brings r / (1 + r^2), and one that meets it,
      * with r p, brings r^2 / (1 + r^2); both bring both. The mean is r p. */
     const double r = fmin(*mean / probability, 1e6), whole = 1 + r * r;
     return r * (1 + r * r * (2 * probability + r)) / (whole * whole);
+}
+
+double bp_pilot_glint(const BpScene *scene, const BpPilotLight *lights, size_t light_count,
+                      const BpPilotLight *light, const BpMaterial *material, const BpPilotTurn *turn,
+                      double *mean) {
+    return glint(scene, light, chosen(scene, lights, light_count, light, material, turn), material, turn,
+                 mean);
 }
 
 bool bp_pilot_turn_smooth(bool refracts, BpPilotTurn *turn) {
@@ -133,14 +139,20 @@ bool bp_pilot_turn_smooth(bool refracts, BpPilotTurn *turn) {
     return true;
 }
 
-#define RINGS 48       /* around the middle */
-#define GROWTH 0x1.4p0 /* the factor between two of them */
-#define PLACES 4       /* on each */
+/* Around the middle, each GROWTH times as wide as the next, or as near to the rim. Fuzz is the same all
+ * around, and has a pole at the rim of its lobe. */
+#define RINGS 20
+#define RINGS_OF_FUZZ 48
+#define GROWTH 0x1.4p0
+#define PLACES 4 /* on each */
 
 double bp_pilot_glint_around(const BpScene *scene, const BpPilotLight *lights, size_t light_count,
                              const BpPilotLight *light, const BpMaterial *material, const BpPilotTurn *turn,
                              double *mean) {
+    static const double turns[PLACES][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
     const bool fuzzy = material->kind == BP_MATERIAL_METAL;
+    const int rings = fuzzy ? RINGS_OF_FUZZ : RINGS, places = fuzzy ? 1 : PLACES;
+    const double probability = chosen(scene, lights, light_count, light, material, turn);
     const double width = bp_pilot_lobe_width(material);
     double u[3], v[3], helper[3] = {0}, squares = 0, step = 1 / sqrt(GROWTH);
     helper[fabs(turn->to_light[0]) < 0.5 ? 0 : 1] = 1;
@@ -148,22 +160,20 @@ double bp_pilot_glint_around(const BpScene *scene, const BpPilotLight *lights, s
     bp_normalize(u);
     bp_cross(turn->to_light, u, v);
     *mean = 0;
-    for (int ring = 0; ring < RINGS; ++ring, step /= GROWTH) {
-        /* Fuzz has a pole at the rim of its lobe, facets have a tail. */
+    for (int ring = 0; ring < rings; ++ring, step /= GROWTH) {
         const double off = fuzzy ? width * sqrt(1 - step * step) : 4 * width * step; /* a sine */
         if (off >= 1) continue;
         const double aside = sqrt(1 - off * off), area = fuzzy ? width * step * width * step : off * off;
-        const double part = 2 * PI * log(GROWTH) / PLACES * area / aside;
-        for (int place = 0; place < PLACES; ++place) {
-            static const double turns[PLACES][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+        const double part = 2 * PI * log(GROWTH) / places * area / aside;
+        for (int place = 0; place < places; ++place) {
             BpPilotTurn turned = *turn;
             double one;
             for (int a = 0; a < 3; ++a)
                 turned.to_light[a] =
                     aside * turn->to_light[a] + off * (turns[place][0] * u[a] + turns[place][1] * v[a]);
-            const double glint = bp_pilot_glint(scene, lights, light_count, light, material, &turned, &one);
+            const double bright = glint(scene, light, probability, material, &turned, &one);
             *mean += part * one;
-            squares += part * one * glint;
+            squares += part * one * bright;
         }
     }
     return *mean > 0 ? squares / *mean : 0;

@@ -54,7 +54,7 @@ static double scattered(const BpScene *scene, const BpPilotSegment *segment, con
     bp_pilot_normal(scene, segment, normal);
     for (int a = 0; a < 3; ++a) back[a] = -segment->direction[a];
     const double arrives = bp_dot(back, normal), leaves = bp_dot(next->direction, normal);
-    if (material->kind == BP_MATERIAL_METAL) return leaves / arrives; /* the same density both ways */
+    if (material->kind == BP_MATERIAL_METAL) return arrives > 0 ? leaves / arrives : 0; /* as in glints() */
     const double drawn = bp_pilot_density(material, normal, next->direction);
     if (!(arrives > 0 && leaves > 0 && drawn > 0)) return 0;
     return bp_pilot_density(material, normal, back) / arrives * leaves / drawn;
@@ -79,7 +79,6 @@ static double glints(const BpPilot *pilot, const BpPilotLight *light, const BpPi
     turn.index = bp_pilot_index_behind(scene, segment, turn.normal);
     const BpPilotAim *aim = pilot->aim;
     double mean, part = bp_pilot_glint(scene, aim->lights, aim->light_count, light, material, &turn, &mean);
-    if (!(part > 0)) return *measure = 0;
     const double arrives = fabs(bp_dot(turn.to_light, turn.normal));
     const double leaves = bp_dot(turn.leaves, turn.normal);
     *measure *= transmitted(scene, segment, next);
@@ -89,6 +88,7 @@ static double glints(const BpPilot *pilot, const BpPilotLight *light, const BpPi
     if (material->kind == BP_MATERIAL_GLOSSY)
         part *= bp_pilot_reflectance(arrives, material->refraction_index) /
                 bp_pilot_reflectance(leaves, material->refraction_index);
+    if (!(part > 0 && arrives > 0)) return *measure = 0;
     *measure /= part;
     return part;
 }

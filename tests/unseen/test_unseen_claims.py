@@ -29,7 +29,7 @@ import tempfile
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 COUNTS = (16, 64, 256, 1024)
-QUICK = ("sun-0.27", "lamp-0.03", "lamp-0.1", "control-no-glass")
+QUICK = ("sun-0.27", "lamp-0.03", "lamp-0.1", "rough-metal", "coat", "control-no-glass")
 MEDIAN, MOST, STOP = 1.5, 3, 1.5
 WANTED = (0.30, 0.10, 0.04)  # of --error
 STOP_SAMPLES = 4096          # at which a picture ends that --error has not ended
