@@ -3,6 +3,7 @@ scenes without it have nothing of it."""
 
 import json
 import os
+import pathlib
 import subprocess
 import unittest
 
@@ -67,6 +68,15 @@ class Unseen(cli.ProgramTest):
                 "materials": {"floor": matte, "ball": material, "lamp": {"type": "diffuse_light", "emit": [50, 50, 50]}}}))
             said = " ".join(self.succeed("explain", "lobes.json").stdout.decode().split())
             self.assertEqual("by way of spheres[1] (ball)" in said, found, (material, radius, said))
+
+    def test_widths(self):
+        """What narrow lobes send and show has the same variance at all sizes of a picture, and the true one."""
+        truth = json.loads((pathlib.Path(__file__).parent / "truth.json").read_text())
+        for scene in ("fuzz-0.05", "rough-metal", "coat", "frosted-sun"):
+            for width in (32, 128, 640):
+                stats = self.render(scene_of(scene), "a.pfm", "--spp", 1, "--width", width)
+                ratio = (stats["unseen"]["variance"] / truth[scene]["variance"][0]) ** 0.5
+                self.assertTrue(1 / 1.5 < ratio < 1.5, (scene, width, ratio))
 
     def test_resumes_and_merges(self):
         """The whole, one resumed, and parts merged in either order: the same film, the same claim, to the bit."""
