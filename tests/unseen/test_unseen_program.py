@@ -119,7 +119,7 @@ class Unseen(cli.ProgramTest):
     @cli.deep
     def test_forms(self):
         """All forms of the kernel: the same film, the same claim."""
-        for scene in ("sun-0.27", "bulb"):
+        for scene in ("sun-0.27", "bulb", "coat", "frosted"):
             films = []
             for form in ("packet", "sample", "pool"):
                 stats = self.render(scene_of(scene), "a.bpa", "--spp", 8, "--kernel", form)
