@@ -119,11 +119,13 @@ static int place_in_transformation(const char *name) {
 
 /* The number that an item gives; -1: none. */
 static int number_of_item(const char *name) {
-    static const char *const cell[6] = {"length_a",    "length_b",   "length_c",
-                                        "angle_alpha", "angle_beta", "angle_gamma"};
+    /* The last three are chemfiles' names of the angles. */
+    static const char *const cell[9] = {"length_a",     "length_b",    "length_c",
+                                        "angle_alpha",  "angle_beta",  "angle_gamma",
+                                        "length_alpha", "length_beta", "length_gamma"};
     if (strncasecmp(name, "_cell.", 6) == 0)
-        for (int i = 0; i < 6; i++)
-            if (strcasecmp(name + 6, cell[i]) == 0) return i;
+        for (int i = 0; i < 9; i++)
+            if (strcasecmp(name + 6, cell[i]) == 0) return i < 6 ? i : i - 3;
     if (strncasecmp(name, "_atom_sites.", 12) != 0) return -1;
     const bool fract = strncasecmp(name + 12, "fract_transf_", 13) == 0;
     if (!fract && strncasecmp(name + 12, "Cartn_transf_", 13) != 0) return -1;
