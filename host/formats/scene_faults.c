@@ -93,6 +93,7 @@ BpStatus bp_refuse_faults(const BpNode *root, const BpScene *scene, BpError *err
         return bp_node_fail(member.value != NULL ? &member : &shape, BP_PART_VALUE, err, "%s", fault.text);
     }
     case BP_FAULT_CAPSULE: {
+        if (fault.index >= scene->listed_capsules) break;
         const BpNode capsules = bp_node_member(root, "capsules"),
                      capsule = bp_node_element(&capsules, fault.index),
                      member = bp_node_member(&capsule, fault.member);

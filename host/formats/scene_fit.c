@@ -22,26 +22,42 @@ void bp_scene_view(BpScene *scene, double direction[3]) {
         bp_view_direction(camera->view, up, direction);
 }
 
-/* All spheres, those that move once more, where they end, the vertices of triangles as points, and the ends
- * of capsules. The caller frees them. */
-static BpStatus all_balls(const BpScene *scene, BpSphere **spheres, size_t *count, BpError *err) {
-    *count = scene->sphere_count + scene->moving_count + 3 * scene->triangle_count + 2 * scene->capsule_count;
-    *spheres = malloc(*count * sizeof **spheres);
-    if (*spheres == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu spheres", *count);
-    BpSphere *next = *spheres;
-    for (size_t i = 0; i < scene->sphere_count; i++) *next++ = scene->spheres[i];
-    for (size_t i = 0; i < scene->moving_count; i++, next++) {
+/* Spheres that move once more, where they end, the vertices of triangles as points, and the ends of capsules.
+ */
+static BpStatus copy_balls(const BpScene *scene, bool all, size_t first, BpSphere **made, size_t *count,
+                           BpError *err) {
+    const size_t moving = first < scene->moving_count ? scene->moving_count : first,
+                 vertices = all ? 3 * scene->triangle_count : 0, bonds = all ? 0 : scene->listed_capsules;
+    *count = scene->sphere_count - first + moving - first + vertices + 2 * (scene->capsule_count - bonds);
+    BpSphere *next = *made = malloc((*count + 1) * sizeof **made);
+    if (next == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu spheres", *count);
+    for (size_t i = first; i < scene->sphere_count; i++) *next++ = scene->spheres[i];
+    for (size_t i = first; i < moving; i++, next++) {
         *next = scene->spheres[i];
         memcpy(next->center, scene->center_ends[i], sizeof next->center);
     }
-    for (size_t i = 0; i < 3 * scene->triangle_count; i++, next++) {
+    for (size_t i = 0; i < vertices; i++, next++) {
         *next = (BpSphere){.radius = 0};
         memcpy(next->center, scene->triangles[i / 3].vertices[i % 3], sizeof next->center);
     }
-    for (size_t i = 0; i < 2 * scene->capsule_count; i++, next++) {
+    for (size_t i = 2 * bonds; i < 2 * scene->capsule_count; i++, next++) {
         *next = (BpSphere){.radius = scene->capsules[i / 2].radius};
         memcpy(next->center, scene->capsules[i / 2].ends[i % 2], sizeof next->center);
     }
+    return BP_OK;
+}
+
+BpStatus bp_scene_fitted(const BpScene *scene, const BpSphere **balls, size_t *count, BpSphere **made,
+                         BpError *err) {
+    const bool all = scene->camera.fit == BP_FIT_SCENE;
+    const size_t first = all ? 0 : scene->particle_first;
+    *made = NULL;
+    *balls = scene->spheres + first;
+    *count = scene->sphere_count - first;
+    if (first >= scene->moving_count && scene->capsule_count == 0 && !(all && scene->triangle_count > 0))
+        return BP_OK;
+    BP_TRY(copy_balls(scene, all, first, made, count, err));
+    *balls = *made;
     return BP_OK;
 }
 
@@ -59,25 +75,21 @@ BpStatus bp_scene_fit_camera(const BpNode *node, const BpSceneChanges *changes, 
     }
     if (camera->fit == BP_FIT_NONE) return BP_OK;
     const bool all = camera->fit == BP_FIT_SCENE;
-    const size_t first = all ? 0 : scene->particle_first;
     double direction[3];
     if (!all && !scene->has_particles)
         return bp_node_fail(&fit, BP_PART_VALUE, err,
                             "found \"particles\", but the scene has none; expected \"scene\", or particles");
     bp_scene_view(scene, direction);
-    const BpSphere *spheres = scene->spheres + first;
-    size_t count = scene->sphere_count - first;
-    BpSphere *both = NULL;
-    if (first < scene->moving_count || (all && scene->triangle_count + scene->capsule_count > 0)) {
-        BP_TRY(all_balls(scene, &both, &count, err));
-        spheres = both;
-    }
+    const BpSphere *spheres;
+    BpSphere *made;
+    size_t count;
+    BP_TRY(bp_scene_fitted(scene, &spheres, &count, &made, err));
     BpError inner = {0};
     const BpStatus status = changes->turning > 0
                                 ? bp_camera_fit_turning(spheres, count, direction, camera->margin,
                                                         changes->turning, camera, &inner)
                                 : bp_camera_fit(spheres, count, direction, camera->margin, camera, &inner);
-    free(both);
+    free(made);
     if (status == BP_OK) return BP_OK;
     bp_node_fail(fit.value != NULL ? &fit : node, BP_PART_VALUE, err, "%s", inner.message);
     bp_error_clear(&inner);

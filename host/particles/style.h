@@ -53,7 +53,7 @@ typedef struct BpParticleStyle {
     bool bar; /* a legend is wanted */
     BpStyleNamed colors[BP_STYLE_NAMED_MAX];
     size_t color_count;
-    bool bonds;         /* drawn as beads */
+    bool bonds;         /* drawn as capsules */
     double bond_radius; /* 0: by the style */
     bool box, solvent, whole;
 } BpParticleStyle;

@@ -1,7 +1,7 @@
-/* style_bonds.h: bonds and the cell, as rows of beads.
+/* style_bonds.h: bonds and the cell, as capsules.
  *
  * In:    bonds, particles that are spheres already.   Out: more spheres.
- * Knows: which bonds can be drawn, how near beads lie.   Does not know: how bonds are found (bonds.h). */
+ * Knows: which bonds can be drawn.   Does not know: how bonds are found (bonds.h). */
 #ifndef BP_PARTICLES_STYLE_BONDS_H
 #define BP_PARTICLES_STYLE_BONDS_H
 

@@ -20,7 +20,7 @@ typedef struct BpStyleJob {
     double spacing, range[2];
     BpRadiusBy radius_by;
     BpColorBy color_by;
-    size_t capacity, albedo_capacity; /* of the scene's arrays */
+    size_t capacity, albedo_capacity, capsule_capacity; /* of the scene's arrays */
     uint16_t *rank; /* of a name among the kinds that get colours of the palette, from 0, in the order of the
                        file */
     double linear[256]; /* of each byte of an sRGB colour */

@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-BpStatus bp_style_make_room(BpStyleJob *job, size_t count, size_t colors, BpError *err) {
+/* Room for `count` more spheres and `colors` more colours. */
+static BpStatus make_room(BpStyleJob *job, size_t count, size_t colors, BpError *err) {
     BpScene *const scene = job->scene;
     if (count > BP_SPHERES_MAX || scene->sphere_count > BP_SPHERES_MAX - count)
         return bp_fail(err, BP_ERR_SCENE, "found more than %u spheres, expected fewer", BP_SPHERES_MAX);
@@ -61,9 +62,40 @@ static void count_spheres(BpStyleJob *job, size_t count, size_t colors) {
     if (has_albedos(job)) job->scene->albedo_count += colors;
 }
 
-void bp_style_put_sphere(BpStyleJob *job, const double center[3], double radius, const double color[3]) {
-    fill_sphere(job, 0, center, radius, 0, color);
-    count_spheres(job, 1, 1);
+/* The place of a colour; bonds in turn often have the same. */
+static uint32_t albedo_of(BpStyleJob *job, const double color[3]) {
+    BpScene *const scene = job->scene;
+    float share[3];
+    if (!has_albedos(job)) return BP_NO_ALBEDO;
+    for (int c = 0; c < 3; c++) share[c] = color[c] > 0 ? color[c] < 1 ? (float)color[c] : 1.0f : 0.0f;
+    for (size_t i = scene->albedo_count; i > 0 && i + 2 > scene->albedo_count; i--)
+        if (memcmp(scene->albedos[i - 1], share, sizeof share) == 0) return (uint32_t)(i - 1);
+    memcpy(scene->albedos[scene->albedo_count], share, sizeof share);
+    return (uint32_t)scene->albedo_count++;
+}
+
+BpStatus bp_style_put_capsule(BpStyleJob *job, const double a[3], const double b[3], double radius,
+                              const double color_a[3], const double color_b[3], BpError *err) {
+    BpScene *const scene = job->scene;
+    BP_TRY(make_room(job, 0, 2, err));
+    if (bp_scene_shapes(scene) >= BP_SPHERES_MAX)
+        return bp_fail(err, BP_ERR_SCENE, "found more than %u spheres and bonds, expected fewer",
+                       BP_SPHERES_MAX);
+    if (scene->capsule_count >= job->capsule_capacity) {
+        const size_t capacity = scene->capsule_count + scene->capsule_count / 2 + 64;
+        BpCapsule *const capsules = realloc(scene->capsules, capacity * sizeof *capsules);
+        if (capsules == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu bonds", capacity);
+        scene->capsules = capsules;
+        job->capsule_capacity = capacity;
+    }
+    BpCapsule *const capsule = &scene->capsules[scene->capsule_count];
+    *capsule = (BpCapsule){.radius = radius, .material = job->material};
+    memcpy(capsule->ends[0], a, sizeof capsule->ends[0]);
+    memcpy(capsule->ends[1], b, sizeof capsule->ends[1]);
+    capsule->albedo[0] = albedo_of(job, color_a);
+    capsule->albedo[1] = albedo_of(job, color_b);
+    scene->capsule_count++;
+    return BP_OK;
 }
 
 /* Particles become spheres block by block, on all threads: those without a radius are found first, which says
@@ -108,7 +140,7 @@ BpStatus bp_style_put_particles(BpStyleJob *job, BpError *err) {
     size_t put = 0;
     const size_t first = job->scene->sphere_count;
     const bool one_color = job->color_by == BP_COLOR_CONSTANT && job->style->color_count == 0;
-    BP_TRY(bp_style_make_room(job, job->shown_count, one_color ? 1 : job->shown_count, err));
+    BP_TRY(make_room(job, job->shown_count, one_color ? 1 : job->shown_count, err));
     Blocks blocks = {job, calloc((size_t)block_count + 1, sizeof *blocks.places), one_color};
     BpThreadPool *pool = bp_thread_pool_create(block_count > 1 ? 0 : 1);
     if (blocks.places == NULL || pool == NULL) {

@@ -1,7 +1,7 @@
-/* style_spheres.h: particles as spheres of a scene.
+/* style_spheres.h: particles as spheres of a scene, and what joins them as capsules.
  *
- * In:    particles whose radii and colours are decided.   Out: spheres, each with a colour of its own.
- * Knows: the scene's arrays, threads.   Does not know: how radii and colours are decided. */
+ * In:    particles whose radii and colours are decided.   Out: spheres and capsules, with colours of their
+ * own. Knows: the scene's arrays, threads.   Does not know: how radii and colours are decided. */
 #ifndef BP_PARTICLES_STYLE_SPHERES_H
 #define BP_PARTICLES_STYLE_SPHERES_H
 
@@ -11,9 +11,8 @@
  * none. */
 BpStatus bp_style_put_particles(BpStyleJob *job, BpError *err);
 
-/* Room for `count` more spheres and `colors` more colours. */
-BpStatus bp_style_make_room(BpStyleJob *job, size_t count, size_t colors, BpError *err);
-/* One sphere, after that. */
-void bp_style_put_sphere(BpStyleJob *job, const double center[3], double radius, const double color[3]);
+/* One capsule, in two colours. */
+BpStatus bp_style_put_capsule(BpStyleJob *job, const double a[3], const double b[3], double radius,
+                              const double color_a[3], const double color_b[3], BpError *err);
 
 #endif

@@ -34,8 +34,8 @@ static bool has_map(const BpScene *scene, const BpMaterial *material) {
     return false;
 }
 
-static bool kind_fault(const BpScene *scene, const BpCapsule *capsule, BpFault *fault) {
-    const BpMaterial *material = &scene->materials[capsule->material];
+bool bp_capsule_material_fault(const BpScene *scene, uint32_t number, BpFault *fault) {
+    const BpMaterial *material = &scene->materials[number];
     if (material->kind == BP_MATERIAL_INTERFACE)
         return bp_fault_set(
             fault, BP_FAULT_CAPSULE, "material",
@@ -137,7 +137,8 @@ BpStatus bp_scene_find_capsule_fault(const BpScene *scene, BpFault *fault, BpErr
                          scene->material_count);
             return BP_OK;
         }
-        if (place_fault(capsule, fault) || kind_fault(scene, capsule, fault)) return BP_OK;
+        if (place_fault(capsule, fault) || bp_capsule_material_fault(scene, capsule->material, fault))
+            return BP_OK;
         glass += bp_material_is(scene->materials[capsule->material].kind, BP_HAS_INSIDE);
         if (pinhole && holds_point(capsule, camera->lookfrom)) {
             char name[BP_SPHERE_NAME_SIZE];

@@ -12,4 +12,7 @@
  * BP_ERR_MEMORY. */
 BpStatus bp_scene_find_capsule_fault(const BpScene *scene, BpFault *fault, BpError *err);
 
+/* Whether capsules may not have this material. */
+bool bp_capsule_material_fault(const BpScene *scene, uint32_t material, BpFault *fault);
+
 #endif

@@ -257,8 +257,11 @@ BpStatus bp_scene_make_normals(BpScene *scene, size_t count, BpError *err) {
 }
 
 const char *bp_capsule_name(const BpScene *scene, size_t capsule, char text[BP_SPHERE_NAME_SIZE]) {
-    (void)scene;
-    snprintf(text, BP_SPHERE_NAME_SIZE, "capsules[%zu]", capsule);
+    const size_t listed = scene->listed_capsules;
+    if (capsule < listed)
+        snprintf(text, BP_SPHERE_NAME_SIZE, "capsules[%zu]", capsule);
+    else
+        snprintf(text, BP_SPHERE_NAME_SIZE, "capsule %zu (from 0) of the particles", capsule - listed);
     return text;
 }
 

@@ -159,7 +159,7 @@ typedef enum BpLighting {
 } BpLighting;
 
 /* A file of shapes: those from `first` on, up to the next file's or the end. Of a cloud one sphere a vertex;
- * of particles those that are shown, then the beads of bonds and cell; of a mesh triangles. */
+ * of particles those that are shown, of which bonds and cells are capsules; of a mesh triangles. */
 typedef struct BpShapeFile {
     char *file; /* as the scene names it */
     size_t first;

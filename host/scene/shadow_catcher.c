@@ -27,7 +27,7 @@ void bp_shadow_catcher_place(BpScene *scene) {
     }
     for (size_t i = 0; i < scene->triangle_count && !scene->has_particles; i++)
         for (int k = 0; k < 3; k++) lowest = fmin(lowest, bp_dot(normal, scene->triangles[i].vertices[k]));
-    for (size_t i = 0; i < scene->capsule_count && !scene->has_particles; i++)
+    for (size_t i = scene->has_particles ? scene->listed_capsules : 0; i < scene->capsule_count; i++)
         for (int k = 0; k < 2; k++)
             lowest = fmin(lowest, bp_dot(normal, scene->capsules[i].ends[k]) - scene->capsules[i].radius);
     catcher->distance = isfinite(lowest) ? lowest : 0;

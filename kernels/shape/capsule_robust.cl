@@ -79,10 +79,10 @@ static void stand_on_axis(Wide place, Sphere *capsule) {
     capsule->beyond = moves & wide_above_0(wide_add_real(place, splat(R(-0.5))));
 }
 
-/* `own`: the ray leaves it into its inside. Notation: m, from the origin to the first end; q, the part of m across the axis,
+/* `left`: the ray leaves it into its inside. Notation: m, from the origin to the first end; q, the part of m across the axis,
  * and p that of the direction; the line is closest to the axis at t = q.p / p.p. Inside is decided as of spheres, by the
  * power of the origin in the ball closest to it. */
-FORCE_INLINE static void choose_ball(const Ray *ray, vbool own, Sphere *capsule) {
+FORCE_INLINE static void choose_ball(const Ray *ray, vbool left, Sphere *capsule) {
     capsule->is_capsule = has_axis(capsule);
     capsule->inside = capsule->beyond = capsule->at_wall = vbool_none;
     capsule->low = vec3(splat(R(-0.0)), splat(R(-0.0)), splat(R(-0.0)));
@@ -101,7 +101,7 @@ FORCE_INLINE static void choose_ball(const Ray *ray, vbool own, Sphere *capsule)
     const WideVec from_axis = wide_madd3(within_axis(less_m), axis, m);
     const Wide square = wide_multiply(wide(r), wide(r));
     const vreal power = wide_near(wide_add(wide_dot(from_axis, from_axis), wide_negative(square)));
-    capsule->inside = (own & ray->inward) | (vbool_not(own) & (power < R(-2.0) * r * ray->origin.error));
+    capsule->inside = (left & ray->inward) | (vbool_not(left) & (power < R(-2.0) * r * ray->origin.error));
     const Wide sine2 = wide_dot(p, p);
     const vbool parallel = vbool_not(wide_above_0(wide_add_real(sine2, -splat(AXIS_PARALLEL))));
     const Wide inverse2 = wide_divide(one, wide_choose(parallel, one, sine2));

@@ -46,6 +46,12 @@ class Scenes(ProgramTest):
         self.succeed("render", name, "--width", 4, "--spp", 1, "-q", "-o", "n.pfm", "--stats", "n.json", *arguments)
         return json.loads(self.read("n.json"))["spheres"]
 
+    def shapes(self, name):
+        """How many spheres and how many capsules the scene has."""
+        self.succeed("explain", name, "--json", "e.json", "-q")
+        [found] = json.loads(self.read("e.json"))["scenes"]
+        return found["spheres"], found["capsules"]
+
     def test_render_a_file(self):
         self.write("a.xyz", ATOMS)
         result = self.succeed("render", "a.xyz", "--width", 16, "--spp", 2)
@@ -183,16 +189,37 @@ class Scenes(ProgramTest):
         self.write("a.xyz", '2\nLattice="9 0 0 0 9 0 0 0 9" Properties=species:S:1:pos:R:3\nC 1 1 1\nO 2.2 1 1\n')
         self.assertEqual(self.spheres("a.xyz"), 2)
         self.document_with({"file": "a.xyz", "style": "ball-and-stick"})
-        bonds = self.spheres("x.json") - 2  # of 70 beads, an eighth of their radius apart, those outside of the balls
-        self.assertTrue(30 <= bonds <= 36, bonds)
-        glass = {"glass": {"type": "dielectric", "refraction_index": 1.5}}
-        self.document_with({"file": "a.xyz", "style": "ball-and-stick", "material": "glass"}, materials=glass)
-        self.assertEqual(self.spheres("x.json") - 2, 70)  # they are seen through the balls
+        self.assertEqual(self.shapes("x.json"), (2, 1))
         self.document_with({"file": "a.xyz", "bonds": True})
-        self.assertEqual(self.spheres("x.json"), 2)  # the balls hide all of it
+        self.assertEqual(self.shapes("x.json"), (2, 0))  # the balls hide all of it
         self.assertIn("1 bonds by distance", self.notes("x.json"))
+        glass = {"glass": {"type": "dielectric", "refraction_index": 1.5}}
+        self.document_with({"file": "a.xyz", "bonds": True, "material": "glass"}, materials=glass)
+        self.assertEqual(self.shapes("x.json"), (2, 1))  # it is seen through the balls
         self.document_with({"file": "a.xyz", "box": True})
-        self.assertGreater(self.spheres("x.json"), 1000)
+        self.assertEqual(self.shapes("x.json"), (2, 12))
+        for kind, says in (({"type": "diffuse_light", "emit": [1, 1, 1]}, "no rays are sent to capsules"), ({"type": "interface"}, "capsules surround no media")):
+            self.document_with({"file": "a.xyz", "style": "ball-and-stick", "material": "m"}, materials={"m": kind})
+            self.fail_with(2, "render", "x.json", says=[says, 'leave "bonds" out'])
+            self.document_with({"file": "a.xyz", "material": "m", "box": True}, materials={"m": kind})
+            self.fail_with(2, "render", "x.json", says=['leave "box" out'])
+
+    def test_colours_of_bonds(self):
+        """From above, under a white sky: each half of a bond has the colour of its end, and the bond ends where its middle says."""
+        camera = {"image_width": 40, "aspect_ratio": 4, "samples_per_pixel": 1, "pixel_sampling": "center", "max_depth": 50,
+                  "projection": "orthographic", "view_height": 1, "lookfrom": [0, 0, 5], "lookat": [0, 0, 0]}
+        self.write("a.data", "LAMMPS\n\n2 atoms\n2 atom types\n1 bonds\n1 bond types\n-2 2 xlo xhi\n-2 2 ylo yhi\n-2 2 zlo zhi\n\nAtoms # bond\n\n1 1 1 -1 0 0\n2 1 2 1 0 0\n\nBonds\n\n1 1 1 2\n")
+        entry = {"file": "a.data", "style": "ball-and-stick", "radius": 0.17, "bonds": {"radius": 0.17},
+                 "color": {"types": {"1": [0.2, 0.4, 0.6], "2": [0.7, 0.3, 0.1]}}}
+        self.document_with(entry, background=[1, 1, 1], camera=camera)
+        self.succeed("render", "x.json", "-q", "-o", "x.pfm")
+        width, height, values = read_pfm(self.read("x.pfm"))
+        for column in range(11, 29):  # convex, so nothing is reflected by it into itself
+            for row in range(height):
+                y = (row + 0.5) / height - 0.5
+                inside, color = abs(y) < 0.17, [0.2, 0.4, 0.6] if column < 20 else [0.7, 0.3, 0.1]
+                for c in range(3):
+                    self.assertAlmostEqual(values[3 * (row * width + column) + c], color[c] if inside else 1, delta=0.01, msg=(row, column))
 
     def test_long_line(self):
         """A comment longer than what is read of a file at first."""
@@ -218,9 +245,10 @@ class Scenes(ProgramTest):
         self.assertNotIn("bonds", self.notes("a.pdb"))  # as spheres
         # The file's bond and the one by distance are one, from whichever side it is listed.
         self.write("a.pdb", "".join(chain) + "END\n")
-        plain = self.spheres("x.json")
+        plain = self.shapes("x.json")
+        self.assertEqual(plain, (5, 4))
         self.write("a.pdb", "".join(chain) + "CONECT    3    2    2    4\nCONECT    2    3\nEND\n")
-        self.assertEqual(self.spheres("x.json"), plain)
+        self.assertEqual(self.shapes("x.json"), plain)
         # Beads of a coarse-grained model, which no distance joins.
         beads = [pdb_line(i, " C1 ", "DPP", (4.7 * i, 0, 0)) for i in range(1, 4)]
         self.write("a.pdb", "".join(beads) + "CONECT    1    2\nCONECT    2    3\n")

@@ -13,6 +13,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static BpStatus check_options(const BpCommandLine *line, BpError *err) {
@@ -81,14 +82,17 @@ static BpStatus look_ahead(BpSeries *series, BpError *err) {
         BP_TRY(bp_setup_load_changed(series->line, series->line->operands[0], &changes, &scene, err));
         BpStatus status = BP_OK;
         if (scene->camera.fit != BP_FIT_NONE) {
-            const size_t first = scene->camera.fit == BP_FIT_SCENE ? 0 : scene->particle_first;
+            const BpSphere *balls = NULL;
+            BpSphere *made = NULL;
+            size_t count = 0;
             double direction[3];
             bp_scene_view(scene, direction);
             if (i == 0)
                 status = bp_fitting_begin(&scene->camera, direction, scene->camera.margin, &fitting, err);
             if (i == 0) camera = scene->camera;
-            if (status == BP_OK)
-                bp_fitting_add(&fitting, scene->spheres + first, scene->sphere_count - first);
+            if (status == BP_OK) status = bp_scene_fitted(scene, &balls, &count, &made, err);
+            if (status == BP_OK) bp_fitting_add(&fitting, balls, count);
+            free(made);
         }
         if (scene->has_color_range) {
             range[0] = fmin(range[0], scene->color_range[0]);
