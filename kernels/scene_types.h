@@ -252,9 +252,9 @@ typedef struct PackedVariation {
 /* How far a leaf's spheres move while the shutter is open: width reals each of x, y, z; -0 where they do not,
  * which leaves every centre as it is. Empty where no sphere of the scene moves and no kernel asks. */
 #define MOTION_REALS(width) (3 * (width))
-/* Of a leaf's capsules, which are spheres with an axis: from the centre, which is one end, to the other, width
- * reals each of x, y, z; 0 of spheres. Then the colour of the half by the other end. In kernels that know
- * capsules, whose index in `slot_sphere` is the number of spheres and triangles and their own number. */
+/* Of a leaf's capsules, which are spheres with an axis: from the centre, which is one end, to the other,
+ * width reals each of x, y, z; 0 of spheres. Then the colour of the half by the other end. In kernels that
+ * know capsules, whose index in `slot_sphere` is the number of spheres and triangles and their own number. */
 #define AXIS_REALS(width) (6 * (width))
 /* A node is `width` child boxes as structure of arrays: low x, y, z, high x, y, z, width reals each. Empty
  * lanes have low > high. Its `width` child words stand in a buffer of their own. */

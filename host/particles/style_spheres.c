@@ -69,7 +69,9 @@ static uint32_t albedo_of(BpStyleJob *job, const double color[3]) {
     if (!has_albedos(job)) return BP_NO_ALBEDO;
     for (int c = 0; c < 3; c++) share[c] = color[c] > 0 ? color[c] < 1 ? (float)color[c] : 1.0f : 0.0f;
     for (size_t i = scene->albedo_count; i > 0 && i + 2 > scene->albedo_count; i--)
-        if (memcmp(scene->albedos[i - 1], share, sizeof share) == 0) return (uint32_t)(i - 1);
+        if (scene->albedos[i - 1][0] == share[0] && scene->albedos[i - 1][1] == share[1] &&
+            scene->albedos[i - 1][2] == share[2])
+            return (uint32_t)(i - 1);
     memcpy(scene->albedos[scene->albedo_count], share, sizeof share);
     return (uint32_t)scene->albedo_count++;
 }

@@ -17,12 +17,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHOICES = 14, COMBINATIONS = 1 << CHOICES, SETS = 2 << BP_EFFECT_COUNT };
+enum { CHOICES = 14, SETS = COVERING_CASES_MAX + 4 * (BP_EFFECT_COUNT + 1) };
 
-static bool allow_any(uint32_t word) {
-    (void)word;
-    return true;
-}
+static const CoveringRules none = {NULL, 0};
 
 /* Each bit of `c` is a choice; effects are left 0. */
 static BpProgramOptions combination(uint32_t c) {
@@ -45,7 +42,7 @@ static BpProgramOptions combination(uint32_t c) {
 
 /* Effects, and above them the tree: a covering array, and the sets that have or lack one effect at most. */
 static size_t list_sets(uint32_t sets[SETS]) {
-    size_t count = covering(BP_EFFECT_COUNT + 1, allow_any, sets, 0);
+    size_t count = covering(BP_EFFECT_COUNT + 1, none, sets, 0);
     for (uint32_t tree = 0; tree < 2; ++tree)
         for (int e = -1; e < BP_EFFECT_COUNT; ++e) {
             const uint32_t one = (e >= 0 ? 1u << e : 0) | tree << BP_EFFECT_COUNT;
@@ -86,11 +83,11 @@ done:
 }
 
 int main(int argc, char **argv) {
-    static uint32_t combinations[COMBINATIONS], sets[SETS];
+    static uint32_t combinations[COVERING_CASES_MAX], sets[SETS];
     BpError err = {0};
     BpStatus status = BP_OK;
     if (argc != 2) return fprintf(stderr, "usage: dump_kernels FOLDER\n"), 2;
-    const size_t count = covering(CHOICES, allow_any, combinations, 0), set_count = list_sets(sets);
+    const size_t count = covering(CHOICES, none, combinations, 0), set_count = list_sets(sets);
     for (size_t c = 0; status == BP_OK && c < count; ++c) {
         BpProgramOptions options = combination(combinations[c]);
         options.effects = BP_EFFECTS_ALL;

@@ -10,22 +10,21 @@
 #include "support/covering.h"
 
 /* A case is a word: its effects, and above them two bits. */
-#define EFFECTS_CASE_TREE (1u << BP_EFFECT_COUNT)
+#define EFFECTS_CASE_TREE EFFECTS_TREE
 #define EFFECTS_CASE_PACKET (2u << BP_EFFECT_COUNT)
-enum { EFFECTS_CHOICES = BP_EFFECT_COUNT + 2, EFFECTS_CASES = 1 << EFFECTS_CHOICES };
-_Static_assert((int)EFFECTS_CHOICES <= (int)COVERING_CHOICES_MAX, "covering.h must take so many choices");
+enum { EFFECTS_CHOICES = BP_EFFECT_COUNT + 2 };
 
 static inline uint32_t effects_case_bits(uint32_t word) {
     return word & BP_EFFECTS_ALL;
 }
 
 static inline bool effects_case_can_occur(uint32_t word) {
-    return effects_can_occur(effects_case_bits(word), (word & EFFECTS_CASE_TREE) != 0);
+    return covering_allows(effects_all_rules, word);
 }
 
 /* Appends to the `count` cases there are; returns how many there are then. */
-static inline size_t effects_covering(uint32_t cases[EFFECTS_CASES], size_t count) {
-    return covering(EFFECTS_CHOICES, effects_case_can_occur, cases, count);
+static inline size_t effects_covering(uint32_t cases[COVERING_CASES_MAX], size_t count) {
+    return covering(EFFECTS_CHOICES, effects_all_rules, cases, count);
 }
 
 #endif

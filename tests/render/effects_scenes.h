@@ -8,6 +8,7 @@
 
 #include "packed/acceleration.h"
 #include "packed/effects.h"
+#include "support/covering.h"
 
 #include <string.h>
 
@@ -32,38 +33,38 @@ typedef struct EffectsScene {
     uint32_t interiors[48];
 } EffectsScene;
 
-/* Lamps are sampled where something emits, discs do, or an image, and something is lit, unless an option says
- * no. */
-static inline bool effects_light(uint32_t bits) {
-    return (bits & (EFFECT_BIT(EMISSION) | EFFECT_BIT(DISCS) | EFFECT_BIT(ENVIRONMENT))) != 0 &&
-           (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(MEDIA) | EFFECT_BIT(OREN_NAYAR) |
-                    EFFECT_BIT(ROUGH_METAL) | EFFECT_BIT(GLOSSY) | EFFECT_BIT(ROUGH_DIELECTRIC))) != 0;
-}
+/* A tree is a choice like an effect. */
+#define EFFECTS_TREE (1u << BP_EFFECT_COUNT)
 
-/* A tree needs spheres, and spheres need a material. Rays to lamps need lamps, and something that they light.
- * Textures are of spheres, noise and images are textures, and spheres move. */
-static inline bool effects_can_occur(uint32_t bits, bool tree) {
-    if (bp_effects_has(bits, BP_EFFECT_LAMPS) && !effects_light(bits)) return false;
-    /* Only where it is asked for: tests/lamps. */
-    if (bp_effects_has(bits, BP_EFFECT_CAUSTICS)) return false;
-    if (bp_effects_has(bits, BP_EFFECT_TEXTURES) && (bits & MATERIAL_EFFECTS) == 0) return false;
-    if (bp_effects_has(bits, BP_EFFECT_MOTION) && (bits & MATERIAL_EFFECTS) == 0) return false;
-    if (bp_effects_has(bits, BP_EFFECT_NOISE) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
-    if (bp_effects_has(bits, BP_EFFECT_IMAGES) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
+/* What lights, and what is lit by rays to lamps. */
+#define EFFECTS_LIGHTS (EFFECT_BIT(EMISSION) | EFFECT_BIT(DISCS) | EFFECT_BIT(ENVIRONMENT))
+#define EFFECTS_LIT                                                                                          \
+    (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(MEDIA) | EFFECT_BIT(OREN_NAYAR) |               \
+     EFFECT_BIT(ROUGH_METAL) | EFFECT_BIT(GLOSSY) | EFFECT_BIT(ROUGH_DIELECTRIC))
+
+/* No scene has all of the first and nothing of the second. */
+static const CoveringRule effects_rules[] = {
+    {EFFECT_BIT(LAMPS), EFFECTS_LIGHTS},
+    {EFFECT_BIT(LAMPS), EFFECTS_LIT},
+    {EFFECT_BIT(CAUSTICS), 0}, /* only where it is asked for: tests/lamps */
+    /* A tree needs spheres, and spheres need a material. Textures are of spheres, and spheres move. */
+    {EFFECTS_TREE, MATERIAL_EFFECTS},
+    {EFFECT_BIT(TEXTURES), MATERIAL_EFFECTS},
+    {EFFECT_BIT(MOTION), MATERIAL_EFFECTS},
+    {EFFECT_BIT(NOISE), EFFECT_BIT(TEXTURES)},
+    {EFFECT_BIT(IMAGES), EFFECT_BIT(TEXTURES)},
     /* In these scenes they have the first material, which is matte or metal and whose texture fills space. */
-    if ((bits & (EFFECT_BIT(TRIANGLES) | EFFECT_BIT(CAPSULES))) != 0 &&
-        (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL))) == 0)
-        return false;
+    {EFFECT_BIT(TRIANGLES), EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL)},
+    {EFFECT_BIT(CAPSULES), EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL)},
     /* Rays are sent to them where they are sent to others, and there are some. */
-    const uint32_t shining = EFFECT_BIT(TRIANGLES) | EFFECT_BIT(LAMPS) | EFFECT_BIT(EMISSION);
-    if (bp_effects_has(bits, BP_EFFECT_TRIANGLE_LAMPS) && (bits & shining) != shining) return false;
-    if (bp_effects_has(bits, BP_EFFECT_SMOOTH_NORMALS) && !bp_effects_has(bits, BP_EFFECT_TRIANGLES))
-        return false;
+    {EFFECT_BIT(TRIANGLE_LAMPS), EFFECT_BIT(TRIANGLES)},
+    {EFFECT_BIT(TRIANGLE_LAMPS), EFFECT_BIT(LAMPS)},
+    {EFFECT_BIT(TRIANGLE_LAMPS), EFFECT_BIT(EMISSION)},
+    {EFFECT_BIT(SMOOTH_NORMALS), EFFECT_BIT(TRIANGLES)},
     /* Of an image around it knows no light. */
-    if (bp_effects_has(bits, BP_EFFECT_SHADOW_CATCHER) && bp_effects_has(bits, BP_EFFECT_ENVIRONMENT))
-        return false;
-    return (bits & MATERIAL_EFFECTS) != 0 || !tree;
-}
+    {EFFECT_BIT(SHADOW_CATCHER) | EFFECT_BIT(ENVIRONMENT), 0},
+};
+static const CoveringRules effects_all_rules = {effects_rules, sizeof effects_rules / sizeof *effects_rules};
 
 static inline BpMaterial *effects_material(EffectsScene *made, BpMaterialKind kind, double r, double g,
                                            double b) {

@@ -3,7 +3,7 @@
  * Tried are all scenes of scenes/ and tests/agree/scenes, small, and scenes made for their sets, and a
  * covering array (effects_covering.h): whatever two or three effects do to each other, with a list or with a
  * tree, in one form of the kernel or the other, some case shows. So each set of a scene is tried in one form,
- * and the forms take turns. `every` tries the scenes in both forms, and all sets that can occur.
+ * and the forms take turns. `both` tries scenes and cases in both forms.
  *
  * On PoCL, bit for bit: radiance, segments and cut of every single pixel sample, as the trace kernel writes
  * them. What sums them (accumulate.cl) has no effects in it (effects_source), so equal samples make equal
@@ -12,11 +12,10 @@
  *
  * Nearly all of the time is the compiler's, so nothing but the trace kernels is compiled, and the general
  * ones once; and PoCL optimises nothing: what a set leaves out is a matter of the source, and that optimised
- * kernels draw the same bits is shown by recorded pictures (test_cli_bits). With `every` it optimises
+ * kernels draw the same bits is shown by recorded pictures (test_cli_bits). With `both` it optimises
  * packets, as users have them.
  *
- * test_effects_equality [every [PART OF]]: PART of OF shares, which can run side by side if each has a kernel
- * cache of its own. */
+ * test_effects_equality [both] */
 #include "effects_covering.h"
 #include "render/render_plan.h"
 #include "render/worker_buffers.h"
@@ -112,6 +111,7 @@ static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOption
     worker->has_triangles = bp_effects_has(setup.program.effects, BP_EFFECT_TRIANGLES);
     worker->has_normals =
         worker->has_triangles && bp_effects_has(setup.program.effects, BP_EFFECT_SMOOTH_NORMALS);
+    worker->has_capsules = bp_effects_has(setup.program.effects, BP_EFFECT_CAPSULES);
     worker->first_triangles = packed.tree.first_triangles;
     worker->normal_leaves = packed.tree.normal_leaves;
     worker->coloured_slots = packed.coloured_slots;
@@ -187,7 +187,8 @@ static bool compare(Lab *lab, uint32_t bits, const Samples *special, const Sampl
 
 /* Whether what could be sampled as a lamp is not: an option says so, or it does not pay. */
 static bool has_idle_lamps(uint32_t bits) {
-    return effects_light(bits) && !bp_effects_has(bits, BP_EFFECT_LAMPS);
+    return (bits & EFFECTS_LIGHTS) != 0 && (bits & EFFECTS_LIT) != 0 &&
+           !bp_effects_has(bits, BP_EFFECT_LAMPS);
 }
 
 /* True when the kernel of its own makes of the scene what the general one makes. `bits`: what it calls for;
@@ -253,7 +254,7 @@ static bool check_case(Lab *lab, uint32_t word) {
 
 /* Whether a set is tried by packets: as where it came up before, else the other form than the last one. A set
  * that is new is appended to the cases. */
-static bool takes_packet(uint32_t word, uint32_t cases[EFFECTS_CASES], size_t *count) {
+static bool takes_packet(uint32_t word, uint32_t cases[COVERING_CASES_MAX], size_t *count) {
     for (size_t i = 0; i < *count; ++i)
         if ((cases[i] & ~EFFECTS_CASE_PACKET) == word) return (cases[i] & EFFECTS_CASE_PACKET) != 0;
     const bool packet = *count % 2 == 0;
@@ -263,7 +264,7 @@ static bool takes_packet(uint32_t word, uint32_t cases[EFFECTS_CASES], size_t *c
 
 /* Tries the scenes of a folder, and appends their sets, each in one form and once; with `both` tries them in
  * both forms. Returns how many are wrong. */
-static unsigned try_scenes(Lab *lab, const char *folder, bool both, uint32_t cases[EFFECTS_CASES],
+static unsigned try_scenes(Lab *lab, const char *folder, bool both, uint32_t cases[COVERING_CASES_MAX],
                            size_t *count) {
     struct dirent **entries = NULL;
     const int entry_count = scandir(folder, &entries, NULL, alphasort); /* the same turns everywhere */
@@ -306,37 +307,32 @@ static unsigned try_scenes(Lab *lab, const char *folder, bool both, uint32_t cas
 }
 
 int main(int argc, char **argv) {
-    static uint32_t cases[EFFECTS_CASES];
+    static uint32_t cases[COVERING_CASES_MAX];
     size_t count = 0;
     BpDeviceInfo device;
     BpError err = {0};
-    const bool every = argc > 1 && strcmp(argv[1], "every") == 0;
-    const unsigned part = argc > 3 ? (unsigned)atoi(argv[2]) : 0, of = argc > 3 ? (unsigned)atoi(argv[3]) : 1;
-    if ((argc > 1 && !every) || of == 0 || part >= of) {
-        fprintf(stderr, "usage: test_effects_equality [every [PART OF]]\n");
+    const bool both = argc > 1 && strcmp(argv[1], "both") == 0;
+    if (argc > 1 && !both) {
+        fprintf(stderr, "usage: test_effects_equality [both]\n");
         return 2;
     }
     if (bp_device_find(getenv("BALLPARK_TEST_DEVICE"), &device, &err) != BP_OK) {
         fprintf(stderr, "skipped: %s\n", err.message);
         return 77;
     }
-    Lab lab = {.exact = strcmp(device.platform, "Portable Computing Language") == 0, .optimised = every};
+    Lab lab = {.exact = strcmp(device.platform, "Portable Computing Language") == 0, .optimised = both};
     if (bp_device_open(&device, &lab.device, &err) != BP_OK) {
         fprintf(stderr, "%s\n", err.message);
         return 1;
     }
-    unsigned wrong = try_scenes(&lab, SOURCE_DIR "/scenes", every, cases, &count);
-    wrong += try_scenes(&lab, SOURCE_DIR "/tests/agree/scenes", every, cases, &count);
-    if (every) {
-        count = 0;
-        for (uint32_t word = 0; word < EFFECTS_CASES; ++word)
-            if (word % of == part && effects_case_can_occur(word)) cases[count++] = word;
-    } else {
-        const size_t scenes = count;
-        count = effects_covering(cases, count);
-        printf("%zu cases of scenes, %zu more for all triples\n", scenes, count - scenes);
-    }
-    for (size_t i = 0; i < count; ++i) wrong += !check_case(&lab, cases[i]);
+    unsigned wrong = try_scenes(&lab, SOURCE_DIR "/scenes", both, cases, &count);
+    wrong += try_scenes(&lab, SOURCE_DIR "/tests/agree/scenes", both, cases, &count);
+    const size_t scenes = count;
+    count = effects_covering(cases, count);
+    printf("%zu cases of scenes, %zu more for all triples\n", scenes, count - scenes);
+    for (size_t i = 0; i < count; ++i)
+        for (uint32_t other = 0; other < (both ? FORMS : 1); ++other)
+            wrong += !check_case(&lab, cases[i] ^ other * EFFECTS_CASE_PACKET);
     printf("%s: %zu cases, %u wrong, %u not bit for bit, %u without light\n", device.name, count, wrong,
            lab.inexact, lab.dark);
     for (int f = 0; f < FORMS; ++f)

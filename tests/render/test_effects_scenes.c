@@ -172,45 +172,84 @@ static bool makes(uint32_t word, const int choices[3], uint32_t values) {
 
 static bool some_case_makes(const uint32_t *cases, size_t count, const int choices[3], uint32_t values) {
     for (size_t i = 0; i < count; ++i)
-        if (effects_case_can_occur(cases[i]) && makes(cases[i], choices, values)) return true;
+        if (makes(cases[i], choices, values)) return true;
     return false;
 }
 
-/* Of all words: the other choices are counted through, and the three are put between them. */
-static bool some_word_makes(const int choices[3], uint32_t values) {
-    for (uint32_t others = 0; others < (uint32_t)EFFECTS_CASES >> 3; ++others) {
-        uint32_t word = others;
-        for (int i = 0; i < 3; ++i) {
-            const uint32_t below = (1u << choices[i]) - 1;
-            word = (word & ~below) << 1 | (values >> i & 1u) << choices[i] | (word & below);
-        }
-        if (effects_case_can_occur(word)) return true;
-    }
-    return false;
+/* How many triples come together in some case; `all` gets how many there are. */
+static unsigned triples_made(const uint32_t *cases, size_t count, int choice_count, unsigned *all) {
+    unsigned made = 0;
+    *all = 0;
+    for (int a = 0; a < choice_count; ++a)
+        for (int b = a + 1; b < choice_count; ++b)
+            for (int c = b + 1; c < choice_count; ++c)
+                for (uint32_t values = 0; values < 8; ++values, ++*all)
+                    made += some_case_makes(cases, count, (const int[]){a, b, c}, values);
+    return made;
 }
 
-/* Any three choices that occur together in some set occur together in a case, and the cases are few. */
+/* Any three choices that occur together in some set occur together in a case, and the cases are few. Whatever
+ * sets that can occur are drawn by chance have no other triples. */
 static void few_cases_cover_all_triples(void **state) {
     (void)state;
-    static uint32_t cases[EFFECTS_CASES];
+    enum { DRAWN = 1 << 22 };
+    static uint32_t cases[COVERING_CASES_MAX], more[COVERING_CASES_MAX];
     const size_t count = effects_covering(cases, 0);
-    unsigned triples = 0, all = 0;
-    for (int a = 0; a < EFFECTS_CHOICES; ++a)
-        for (int b = a + 1; b < EFFECTS_CHOICES; ++b)
-            for (int c = b + 1; c < EFFECTS_CHOICES; ++c)
-                for (uint32_t values = 0; values < 8; ++values, ++all) {
-                    const int choices[] = {a, b, c};
-                    const bool occurs = some_word_makes(choices, values);
-                    triples += occurs;
-                    assert_int_equal(some_case_makes(cases, count, choices, values), occurs);
-                }
-    assert_in_range(triples, 9 * all / 10, all - 1); /* some cannot occur: lamps that light nothing */
+    unsigned all = 0;
+    for (size_t i = 0; i < count; ++i) assert_true(effects_case_can_occur(cases[i]));
+    const unsigned triples = triples_made(cases, count, EFFECTS_CHOICES, &all);
+    assert_in_range(triples, 8 * all / 10, all - 1); /* some cannot occur: lamps that light nothing */
     assert_in_range(count, 8, 40);
     assert_int_equal(effects_covering(cases, count), count); /* nothing is left to add */
+    memcpy(more, cases, sizeof cases);
+    size_t longer = count;
+    uint32_t state_of_random = 1;
+    for (int n = 0; n < DRAWN && longer < COVERING_CASES_MAX; ++n) {
+        state_of_random = state_of_random * 1664525u + 1013904223u;
+        const uint32_t word = state_of_random >> (32 - EFFECTS_CHOICES);
+        if (effects_case_can_occur(word)) more[longer++] = word;
+    }
+    assert_in_range(longer, COVERING_CASES_MAX / 4, COVERING_CASES_MAX);
+    assert_int_equal(triples_made(more, longer, EFFECTS_CHOICES, &all), triples);
+}
+
+/* For few choices and rules drawn by chance, the triples covered are those of all words that the rules allow.
+ */
+static void covered_is_what_can_occur(void **state) {
+    (void)state;
+    enum { CHOICES = 9, RULES = 8 };
+    static uint32_t cases[COVERING_CASES_MAX], words[1 << CHOICES];
+    uint32_t random = 7;
+    for (int turn = 0; turn < 50; ++turn) {
+        CoveringRule rules[RULES];
+        size_t allowed = 0;
+        unsigned all = 0;
+        for (int r = 0; r < RULES; ++r) {
+            uint32_t numbers[5];
+            for (int n = 0; n < 5; ++n) numbers[n] = (random = random * 1664525u + 1013904223u) >> 16;
+            rules[r].on = 1u << numbers[0] % CHOICES | 1u << numbers[1] % CHOICES;
+            rules[r].off = (1u << numbers[2] % CHOICES | 1u << numbers[3] % CHOICES) & ~rules[r].on;
+            if (numbers[4] % 4 == 0) rules[r].off = 0;
+        }
+        const CoveringRules of = {rules, RULES};
+        for (uint32_t word = 0; word < 1u << CHOICES; ++word) {
+            bool allows = true;
+            for (int r = 0; r < RULES; ++r)
+                allows = allows && ((~word & rules[r].on) != 0 || (word & rules[r].off) != 0);
+            assert_int_equal(covering_allows(of, word), allows);
+            if (allows) words[allowed++] = word;
+        }
+        const size_t count = covering(CHOICES, of, cases, 0);
+        for (size_t i = 0; i < count; ++i) assert_true(covering_allows(of, cases[i]));
+        assert_int_equal(triples_made(cases, count, CHOICES, &all),
+                         triples_made(words, allowed, CHOICES, &all));
+        assert_true(count <= allowed);
+    }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(each_scene_has_the_effects_written_by_hand),
-                                       cmocka_unit_test(few_cases_cover_all_triples)};
+                                       cmocka_unit_test(few_cases_cover_all_triples),
+                                       cmocka_unit_test(covered_is_what_can_occur)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
