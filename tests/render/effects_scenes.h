@@ -216,7 +216,8 @@ static inline void effects_textures(EffectsScene *made, uint32_t bits) {
 /* A ground, a row of spheres that overlap and repeat (of equal ones the first must be met), bubbles, and with
  * a tree two more rows. */
 static inline void effects_spheres(EffectsScene *made, bool tree) {
-    const size_t count = tree ? 48 : BP_LIST_SPHERES_MAX - made->scene.triangle_count;
+    const size_t others = made->scene.triangle_count + made->scene.capsule_count;
+    const size_t count = tree ? 48 : BP_LIST_SPHERES_MAX - others;
     const size_t materials = made->scene.material_count;
     if (materials == 0) return;
     for (size_t i = 0; i < count; ++i) {
