@@ -348,6 +348,9 @@ class Against(Check):
                      "--json", "r.json")
         self.assertEqual(self.kinds(), [("settings", "samples_per_pixel 64", "samples_per_pixel 128"),
                                         ("settings", "seed 0", "seed 3")])
+        self.edited(lambda d: d.update(triangles=12, capsules=3))
+        self.succeed(*self.WORDS, *self.AGREE, "--against", "old.json", "--json", "r.json")
+        self.assertEqual(self.kinds(), [("settings", "triangles 12", "triangles 0"), ("settings", "capsules 3", "capsules 0")])
 
     @cli.deep
     def test_a_suite(self):

@@ -341,6 +341,11 @@ class Unseen(cli.ProgramTest):
         unseen = unseen.get("scenes", [unseen])[0]["unseen"]
         self.assertAlmostEqual(unseen["triangles"], 1, places=6)
         self.assertEqual(unseen["spheres"], [])
+        capsule = {key: value for key, value in document.items() if key not in ("quads", "boxes")}
+        capsule["spheres"] = capsule["spheres"] + [{"center": [0, -100, 0], "radius": 100, "material": "m"}]
+        capsule["capsules"] = [{"ends": [[-0.5, 0.8, 0], [0.5, 0.8, 0]], "radius": 0.4, "material": "block"}]
+        self.write("c.json", capsule)
+        self.assertRegex(self.succeed("explain", "c.json").stdout.decode(), r"comes by way of capsules\s+\(block\)")
         # A lamp of triangles, to which rays are sent: there is nothing to look for, until a mirror shows it.
         document["materials"]["block"] = dict(document["materials"]["m"])
         document["quads"].append({"corner": [1, 3, 0], "u": [0.5, 0, 0], "v": [0, 0, 0.5], "material": "lamp"})

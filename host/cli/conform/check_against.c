@@ -128,8 +128,8 @@ static const char *verdict_of(const json_t *entry) {
 
 static void compare_settings(Changes *changes, const json_t *scene, const json_t *old_scene,
                              const json_t *entry, const json_t *old) {
-    static const char *const members[] = {"width",     "height", "samples_per_pixel",
-                                          "max_depth", "seed",   "spheres"};
+    static const char *const members[] = {"width", "height",  "samples_per_pixel", "max_depth",
+                                          "seed",  "spheres", "triangles",         "capsules"};
     char name[BP_CHECK_LABEL_SIZE];
     bp_check_label(scene, name, sizeof name);
     for (size_t m = 0; m < sizeof members / sizeof *members; ++m) {

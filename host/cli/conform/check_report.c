@@ -11,12 +11,14 @@
 #include <string.h>
 
 json_t *bp_check_scene_json(const char *name, const BpScene *scene, const BpRenderOptions *options) {
-    return json_pack("{s:o, s:s, s:s, s:i, s:i, s:I, s:i, s:o, s:I, s:[]}", "scene", bp_json_text(name),
-                     BP_CHECK_SAMPLING, bp_light_sampling_names[bp_render_light_sampling(scene, options)],
-                     BP_CHECK_CAUSTICS, bp_caustics_names[bp_render_caustics(scene, options)], "width",
-                     (int)scene->camera.width, "height", (int)scene->camera.height, "samples_per_pixel",
-                     (json_int_t)options->samples_per_pixel, "max_depth", (int)options->max_depth, "seed",
-                     bp_json_whole(options->seed), "spheres", (json_int_t)scene->sphere_count, "results");
+    return json_pack(
+        "{s:o, s:s, s:s, s:i, s:i, s:I, s:i, s:o, s:I, s:I, s:I, s:[]}", "scene", bp_json_text(name),
+        BP_CHECK_SAMPLING, bp_light_sampling_names[bp_render_light_sampling(scene, options)],
+        BP_CHECK_CAUSTICS, bp_caustics_names[bp_render_caustics(scene, options)], "width",
+        (int)scene->camera.width, "height", (int)scene->camera.height, "samples_per_pixel",
+        (json_int_t)options->samples_per_pixel, "max_depth", (int)options->max_depth, "seed",
+        bp_json_whole(options->seed), "spheres", (json_int_t)scene->sphere_count, "triangles",
+        (json_int_t)scene->triangle_count, "capsules", (json_int_t)scene->capsule_count, "results");
 }
 
 void bp_check_count_all(const json_t *scenes, BpCheckCounts *counts) {

@@ -4,12 +4,12 @@
  * Knows: the structure of the document.   Does not know: how entries came about.
  *
  * The document of one scene is {"ballpark", "scene", "light_sampling", "caustics", "width",
- * "height", "samples_per_pixel", "max_depth", "seed", "spheres", "results": [an entry for each device],
- * "verdict", "broken_drivers"}; of a suite, {"ballpark", "suite", "level", "scenes": [{"scene", ...,
- * "results"}], "verdict", "broken_drivers"}. A scene whose lights are sampled stands twice in "scenes":
- * "light_sampling" is "off" in the first and "on" in the second. One whose lights are sampled by way of balls
- * of glass and mirrors stands there once more, and "caustics" is "on". The document of one such scene has
- * "scenes" as well. */
+ * "height", "samples_per_pixel", "max_depth", "seed", "spheres", "triangles", "capsules", "results": [an
+ * entry for each device], "verdict", "broken_drivers"}; of a suite, {"ballpark", "suite", "level", "scenes":
+ * [{"scene", ..., "results"}], "verdict", "broken_drivers"}. A scene whose lights are sampled stands twice in
+ * "scenes": "light_sampling" is "off" in the first and "on" in the second. One whose lights are sampled by
+ * way of balls of glass and mirrors stands there once more, and "caustics" is "on". The document of one such
+ * scene has "scenes" as well. */
 #ifndef BP_CLI_CONFORM_CHECK_REPORT_H
 #define BP_CLI_CONFORM_CHECK_REPORT_H
 

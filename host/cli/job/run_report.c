@@ -82,7 +82,8 @@ json_t *bp_run_stats(const BpRunResult *result) {
             "cut_paths",
         (json_int_t)report->truncated_paths, "shadow_rays", (json_int_t)report->shadow_rays, "unseen_part",
         result->claim.unseen_part, "unseen", bp_unseen_json(&result->unseen, result->claim.luminance));
-    json_t *run = json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:i, s:I, s:I, s:I, s:s}",
+    json_t *run = json_pack("{s:I, s:I, s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:i, s:I, s:I, s:I, s:s}",
+                            "triangles", (json_int_t)info.triangles, "capsules", (json_int_t)info.capsules,
                             "acceleration", bp_acceleration_name(report->acceleration), "output",
                             bp_json_text(result->output), "first_sample", (json_int_t)options->first_sample,
                             "replicates", (int)result->film->replicates, "partial", result->film->partial,

@@ -30,9 +30,13 @@ static void print_sphere(const BpScene *scene, size_t sphere, FILE *out) {
     if (material != NULL && material[0] != '\0') fprintf(out, " (%s)", material);
 }
 
-static void print_triangles(const BpScene *scene, const BpUnseenLight *light, FILE *out) {
+/* The triangles and capsules of a material. */
+static void print_others(const BpScene *scene, const BpUnseenLight *light, FILE *out) {
     const char *material = scene->materials[light->triangle_material].name;
-    fputs("triangles", out);
+    fputs(scene->capsule_count == 0    ? "triangles"
+          : scene->triangle_count == 0 ? "capsules"
+                                       : "triangles and capsules",
+          out);
     if (material != NULL && material[0] != '\0') fprintf(out, " (%s)", material);
 }
 
@@ -42,7 +46,7 @@ static void print_ways(const BpScene *scene, const BpUnseenLight *light, FILE *o
     for (size_t i = 0; i < named + also; ++i) {
         if (i > 0) fputs(i + 1 == named + also ? " and " : ", ", out);
         if (i == named) {
-            print_triangles(scene, light, out);
+            print_others(scene, light, out);
             break;
         }
         print_sphere(scene, light->spheres[i], out);
