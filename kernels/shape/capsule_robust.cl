@@ -37,7 +37,7 @@ static void be_sphere(Sphere *sphere) {
 
 /* By the ball around the point of the axis that is nearest to the ray's line; all of the capsule lies within a radius of
  * where its ends project to. p, l and the place err by less than margin = 96 u (|p| + |along| + r) + the ray's own margin
- * (u = ROUNDOFF); of a million hits none was ruled out, and none used a fifth of it. */
+ * (u = ROUNDOFF); of the hits in tests/hard/test_capsules.c none is ruled out. */
 FORCE_INLINE static vbool capsule_is_candidate(const Ray *ray, vreal bound, const Sphere *capsule) {
     const Vec3 to_end = subtract3(capsule->centre, ray->origin.high), axis = capsule->axis;
     const vreal p = loose_dot3(to_end, ray->direction), along = loose_dot3(axis, ray->direction);
