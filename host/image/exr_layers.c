@@ -173,10 +173,20 @@ BpStatus bp_exr_layer_choose(const BpImageInput *input, exr_const_context_t exr,
     return check_layer(input, exr, layer, err);
 }
 
-int bp_exr_channel_place(const BpExrLayer *layer, const char *channel) {
+/* The channel's name within the layer, if that is one letter; else 0. */
+static char letter_of(const BpExrLayer *layer, const char *channel) {
     const size_t length = strlen(layer->prefix);
+    return strncmp(channel, layer->prefix, length) == 0 && strlen(channel) == length + 1 ? channel[length]
+                                                                                         : 0;
+}
+
+int bp_exr_channel_place(const BpExrLayer *layer, const char *channel) {
     const char *const letters = layer->gray ? "Y" : "RGB";
-    if (strncmp(channel, layer->prefix, length) != 0 || strlen(channel) != length + 1) return -1;
-    const char *const letter = strchr(letters, channel[length]);
-    return letter != NULL ? (int)(letter - letters) : -1;
+    const char letter = letter_of(layer, channel);
+    const char *const place = letter != 0 ? strchr(letters, letter) : NULL;
+    return place != NULL ? (int)(place - letters) : -1;
+}
+
+bool bp_exr_channel_is_alpha(const BpExrLayer *layer, const char *channel) {
+    return letter_of(layer, channel) == 'A';
 }

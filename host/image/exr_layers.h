@@ -26,5 +26,7 @@ BpStatus bp_exr_layer_choose(const BpImageInput *input, exr_const_context_t exr,
 
 /* The index of a channel within a texel: 0 to 2; -1 if it is not part of the layer. */
 int bp_exr_channel_place(const BpExrLayer *layer, const char *channel);
+/* Whether a channel is the layer's alpha. */
+bool bp_exr_channel_is_alpha(const BpExrLayer *layer, const char *channel);
 
 #endif

@@ -2,8 +2,8 @@
  *
  * Scan lines or tiles, the largest level: R, G and B as half or 32-bit floats, or Y alone as grey, in the
  * layer that exr_layers.h chooses. The image is the display window: black where the file has no data, without
- * what lies around it. Colours of other primaries than Rec. 709's (the attribute "chromaticities") are
- * converted. */
+ * what lies around it. Alpha is left out, with a note where texels are transparent. Colours of other
+ * primaries than Rec. 709's (the attribute "chromaticities") are converted. */
 #include "exr_layers.h"
 #include "primaries.h"
 #include "reader.h"
@@ -25,8 +25,9 @@ typedef struct ExrReader {
     BpExrLayer layer;
     bool b44, all_half;               /* its compression; whether all channels of the part are half floats */
     exr_attr_box2i_t window, display; /* where there are data; what the image shows */
-    float *block;                     /* a chunk's pixels, unpacked, before they go to their place */
+    float *block; /* a chunk's pixels, unpacked, before they go to their place; then their alpha */
     size_t block_size;
+    size_t transparent; /* texels that are not opaque */
 } ExrReader;
 
 static int64_t read_at(exr_const_context_t context, void *user_data, void *buffer, uint64_t size,
@@ -122,15 +123,18 @@ static void place_block(ExrReader *reader, int64_t column, int64_t row, int64_t 
     const int64_t top = row + reader->window.min.y - reader->display.min.y;
     const int64_t width = reader->image->width, height = reader->image->height;
     const int64_t begin = left < 0 ? -left : 0, end = left + columns > width ? width - left : columns;
-    for (int64_t y = 0; y < rows && begin < end; y++)
-        if (top + y >= 0 && top + y < height)
-            memcpy(reader->image->texels + 3 * ((top + y) * width + left + begin),
-                   reader->block + 3 * (y * columns + begin), (size_t)(end - begin) * 3 * sizeof(float));
+    const float *const alpha = reader->block + 3 * columns * rows;
+    for (int64_t y = 0; y < rows && begin < end; y++) {
+        if (top + y < 0 || top + y >= height) continue;
+        memcpy(reader->image->texels + 3 * ((top + y) * width + left + begin),
+               reader->block + 3 * (y * columns + begin), (size_t)(end - begin) * 3 * sizeof(float));
+        for (int64_t x = begin; x < end; x++) reader->transparent += alpha[y * columns + x] < 1;
+    }
 }
 
-/* Room for the pixels of a chunk, all black. */
+/* Room for the pixels of a chunk, all black and opaque. */
 static BpStatus clear_block(ExrReader *reader, int64_t columns, int64_t rows, BpError *err) {
-    const size_t size = (size_t)columns * (size_t)rows * 3 * sizeof(float);
+    const size_t count = (size_t)columns * (size_t)rows, size = count * 4 * sizeof(float);
     if (size > reader->block_size) {
         free(reader->block);
         reader->block = malloc(size);
@@ -139,6 +143,7 @@ static BpStatus clear_block(ExrReader *reader, int64_t columns, int64_t rows, Bp
             return bp_fail(err, BP_ERR_MEMORY, "out of memory for reading an OpenEXR file");
     }
     if (size > 0) memset(reader->block, 0, size);
+    for (size_t i = 3 * count; i < 4 * count; i++) reader->block[i] = 1;
     return BP_OK;
 }
 
@@ -163,13 +168,18 @@ static BpStatus read_chunk(ExrReader *reader, const exr_chunk_info_t *chunk, int
     for (int i = 0; i < reader->decode.channel_count && code == EXR_ERR_SUCCESS; i++) {
         exr_coding_channel_info_t *channel = &reader->decode.channels[i];
         const int place = bp_exr_channel_place(&reader->layer, channel->channel_name);
+        const bool alpha = bp_exr_channel_is_alpha(&reader->layer, channel->channel_name) &&
+                           channel->x_samples == 1 && channel->y_samples == 1 &&
+                           channel->data_type != EXR_PIXEL_UINT;
+        const int32_t stride = (int32_t)sizeof(float) * (alpha ? 1 : 3);
         channel->decode_to_ptr = NULL;
-        if (place < 0) continue;
-        channel->decode_to_ptr = (uint8_t *)(reader->block + place);
+        if (place < 0 && !alpha) continue;
+        channel->decode_to_ptr =
+            (uint8_t *)(reader->block + (alpha ? (ptrdiff_t)3 * chunk->width * chunk->height : place));
         channel->user_bytes_per_element = sizeof(float);
         channel->user_data_type = EXR_PIXEL_FLOAT;
-        channel->user_pixel_stride = 3 * sizeof(float);
-        channel->user_line_stride = (int32_t)(3 * sizeof(float)) * chunk->width;
+        channel->user_pixel_stride = stride;
+        channel->user_line_stride = stride * chunk->width;
     }
     if (code == EXR_ERR_SUCCESS && first)
         code = exr_decoding_choose_default_routines(reader->exr, part, &reader->decode);
@@ -291,6 +301,7 @@ static BpStatus read_image(ExrReader *reader, BpError *err) {
     if (reader->layer.gray) spread_gray(reader->image);
     if (reader->layer.note[0] != '\0') bp_texels_note(reader->image, "%s", reader->layer.note);
     note_windows(reader);
+    bp_texels_note_alpha(reader->image, reader->transparent);
     return convert_colors(reader, err);
 }
 

@@ -276,9 +276,7 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
     if (reader->warning[0] != '\0' && reader->input->encoding == BP_ENCODING_OF_FORMAT)
         bp_texels_note(reader->image, "its colours may be wrong, since a chunk is not used (%s)",
                        reader->warning);
-    if (reader->transparent > 0)
-        bp_texels_note(reader->image, "its alpha is left out, though %zu of %zu texels are not opaque",
-                       reader->transparent, (size_t)width * height);
+    bp_texels_note_alpha(reader->image, reader->transparent);
     if (reader->outside > 0)
         bp_texels_note(reader->image, "%zu texel%s of a colour that its palette lacks: black",
                        reader->outside, bp_plural(reader->outside));

@@ -47,6 +47,12 @@ void bp_texels_note(BpImage *image, const char *format, ...) {
     va_end(arguments);
 }
 
+void bp_texels_note_alpha(BpImage *image, size_t transparent) {
+    if (transparent > 0)
+        bp_texels_note(image, "its alpha is left out, though %zu of %zu texels are not opaque", transparent,
+                       (size_t)image->width * image->height);
+}
+
 static BpStatus refuse_texel(const BpImage *image, size_t place, double scale, const char *path,
                              BpError *err) {
     static const char *const channels[] = {"red", "green", "blue"};

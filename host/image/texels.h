@@ -50,6 +50,8 @@ void bp_texels_destroy(BpImage **image); /* NULL-safe */
 
 /* Adds to the image's notes. */
 void bp_texels_note(BpImage *image, const char *format, ...) BP_PRINTF_LIKE(2, 3);
+/* Notes that alpha is left out, where that matters: of so many texels. */
+void bp_texels_note_alpha(BpImage *image, size_t transparent);
 
 /* Multiplies the texels by `scale`, sets negative ones to 0, and computes bound, mean and spread. Fails with
  * BP_ERR_SCENE, naming its place, for a texel that is not finite or above 1e12; `path` is the file that it

@@ -181,6 +181,20 @@ static BpStatus read_faces(Ply *ply, BpError *err) {
     return BP_OK;
 }
 
+/* A property of vertices or faces that seems to hold colours in another form, where neither has any. */
+static const char *unread_color(const Ply *ply) {
+    if (ply->header.color[0] >= 0 || ply->face_color[0] >= 0) return NULL;
+    for (int of_faces = 0; of_faces < 2; of_faces++) {
+        const PlyElement *const element = &ply->header.elements[of_faces ? ply->face : ply->header.vertex];
+        const char *names[PLY_PROPERTIES_MAX];
+        for (size_t i = 0; i < element->property_count; i++)
+            names[i] = ply->header.properties[element->first + i].name;
+        const char *const found = column_single_color(names, element->property_count);
+        if (found != NULL) return found;
+    }
+    return NULL;
+}
+
 /* Notes what belongs to surfaces and is not read. */
 static void note_left_out(const Ply *ply) {
     BpMesh *const mesh = ply->builder->mesh;
@@ -193,6 +207,12 @@ static void note_left_out(const Ply *ply) {
     for (size_t i = 0; i < ply->header.elements[ply->header.vertex].property_count; i++) {
         const char *const name = ply_property(&ply->header, (int)i)->name;
         has_texture |= strcmp(name, "s") == 0 || strcmp(name, "u") == 0 || strcmp(name, "texture_u") == 0;
+    }
+    const char *const unread = unread_color(ply);
+    if (unread != NULL) {
+        char shown[64];
+        bp_printable(unread, shown, sizeof shown);
+        mesh_note(mesh, "no colours from \"%s\", since red, green and blue must be properties", shown);
     }
     if (has_texture) mesh_note(mesh, "texture coordinates left out");
     if (has_material) mesh_note(mesh, "materials of faces, by their numbers, left out");

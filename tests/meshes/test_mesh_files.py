@@ -143,6 +143,9 @@ class Ply(MeshTest):
         self.assertEqual(self.of("a.ply", text)["notes"], "texture coordinates left out")
         for name in ("material_index", "material_indices"):
             self.assertIn("materials of faces, by their numbers, left out", self.of("a.ply", text.replace(b"flags", name.encode()))["notes"])
+        for name in ("rgb", "rgba"):
+            self.assertIn(f'no colours from "{name}", since red, green and blue must be properties', self.of("a.ply", text.replace(b"quality", name.encode()))["notes"])
+            self.assertIn(f'no colours from "{name}", since', self.of("a.ply", text.replace(b"flags", name.encode()))["notes"])
         self.assertEqual(self.of("a.ply", ply("ascii"))["notes"], "")
         for name in ("s", "u", "texture_u"):
             found = self.of("a.ply", text.replace(b"texcoord", b"other").replace(b"quality", name.encode()))

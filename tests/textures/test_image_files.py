@@ -202,6 +202,18 @@ class ImageFiles(ProgramTest):
                                                part({c: f for c, f in zip("RGB", (channel(3), channel(4), channel(5)))}, name="right", tile=5)))
         self.assertEqual(found, right)
         self.assertIn('the layer "left" is used, of 2 in the file', said)
+        # Alpha, of the layer that is used and within the display window.
+        def clear(x, y):
+            return 0.25 if x == 3 and y < 4 else 1
+        for channels, note in (({**RGB, "A": clear}, True), ({**RGB, "other.A": clear}, False), ({**layer("beauty"), "beauty.A": clear}, True),
+                               ({**layer("beauty"), "A": clear}, False), ({"Y": channel(0), "A": clear}, True), ({**RGB, "A": lambda x, y: 1}, False)):
+            for tile, kind in ((None, 2), (4, 1)):
+                colours = self.around("b.exr", exr(part({n: f for n, f in channels.items() if not n.endswith("A")}, tile=tile, kind=kind)))[0]
+                found, said = self.around("a.exr", exr(part(channels, tile=tile, kind=kind)))
+                self.assertEqual(found, colours)
+                self.assertEqual(f"its alpha is left out, though 4 of {WIDTH * HEIGHT} texels are not opaque" in said, note, (list(channels), said))
+        found, said = self.around("a.exr", exr(part({**RGB, "A": clear}, (2, 1, 6, 3))))
+        self.assertIn(f"its alpha is left out, though 3 of {WIDTH * HEIGHT} texels", said)
         luminance = exr(part({"Y": channel(0), "Z": channel(1)}))
         gray = images.pfm(WIDTH, HEIGHT, lambda x, y: [share(x, y, 0)], 1)
         self.assertEqual(self.around("a.exr", luminance)[0], self.around("right.pfm", gray)[0])
