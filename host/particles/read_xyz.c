@@ -40,6 +40,7 @@ typedef struct Layout {
     size_t column_count;
     bool extended, whole_colors; /* whole_colors: they are of type I */
     uint64_t ellipsoids;
+    bool number_seen[BP_ELEMENT_MAX + 1], symbol_seen; /* among the species */
 } Layout;
 
 static void add_column(Layout *layout, const char *name, const char *suffix, int word) {
@@ -321,6 +322,10 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
             particle.element = bp_element_of_species(words[w]);
             particle.type = words[w];
             if (particle.element == 0 && strcmp(words[w], "X") == 0) particle.flags |= BP_PARTICLE_DUMMY;
+            int64_t whole = 0;
+            const bool is_number = word_whole(words[w], &whole) && whole > 0 && whole <= BP_ELEMENT_MAX;
+            layout->number_seen[is_number ? whole : 0] = true;
+            layout->symbol_seen |= !is_number;
         }
         if (role == TYPE && particle.type == NULL) {
             particle.type = words[w];
@@ -391,6 +396,18 @@ static bool is_like_atom(const Layout *layout, char *text) {
     return true;
 }
 
+/* Types count from 1; numbers with gaps may be atomic numbers. */
+static void note_numbers(BpParticleFile *file, const Layout *layout) {
+    int seen = 0, highest = 0;
+    for (int n = 1; n <= BP_ELEMENT_MAX; n++) {
+        seen += layout->number_seen[n];
+        if (layout->number_seen[n]) highest = n;
+    }
+    if (layout->symbol_seen || highest == seen || file->out == NULL) return;
+    bp_particles_note(file->out, "numbers such as %d read as types; elements must be given as symbols",
+                      highest);
+}
+
 /* Behind the last atom there is nothing, or the number of atoms of another frame, or text of other programs,
  * as the frequencies and names of the data set QM9; but no further atom. */
 static BpStatus check_behind(BpParticleFile *file, const Layout *layout, BpError *err) {
@@ -422,6 +439,7 @@ BpStatus read_xyz(BpParticleFile *file, bool *end, BpError *err) {
     for (uint64_t i = 0; i < count && status == BP_OK; i++) status = take_atom(file, layout, i, count, err);
     if (status == BP_OK) status = check_behind(file, layout, err);
     if (status == BP_OK) frame_note_shapes(file, layout->ellipsoids, "ellipsoid");
+    if (status == BP_OK) note_numbers(file, layout);
     free(value);
     free(layout);
     return status;

@@ -275,7 +275,13 @@ class Formats(FileTest):
                                  ("13C", "C"), ("2H", "H"), ("235U", "U"), ("57Fe3+", "Fe"), ("1000C", ""), ("12", ""), ("2-", ""), ("3Q", "")]:
             s = self.of("a.xyz", f"1\n\n{species} 0 0 0\n")
             self.assertEqual((list(s["elements"]), s["first"]["type"]), ([element], species))
+        for numbers, highest in (("8 1 1", 8), ("1 2 1", 0), ("6", 6), ("1", 0), ("3 2 1 4", 0), ("1 3", 3), ("8 H 1", 0), ("8 1 119", 0), ("8 0", 0)):
+            text = f"{len(numbers.split())}\n\n" + "".join(f"{word} 0 0 {z}\n" for z, word in enumerate(numbers.split()))
+            note = f"numbers such as {highest} read as types; elements must be given as symbols"
+            for frames in (1, 2):
+                self.assertEqual(note in self.of("a.xyz", text * frames, frames - 1)["notes"], highest > 0, numbers)
         s = self.of("a.xyz", "1\nProperties=Z:I:1:pos:R:3\n6 0 0 0\n")
+        self.assertEqual(s["notes"], "")
         self.assertEqual((list(s["elements"]), s["first"]["type"]), (["C"], "C"))
 
     def test_extended_xyz(self):
