@@ -6,8 +6,10 @@
     const uint item = (uint)get_global_id(0);                                                                          \
     if (item >= count) return;
 
-/* Of a geometry of spheres alone, in a program that knows triangles. */
-#if EFFECT_TRIANGLES
+/* Of a geometry of spheres alone, in a program that knows triangles, and perhaps normals at their vertices. */
+#if SMOOTH_TRIANGLES
+#define NO_TRIANGLES(leaf_count) 0, 0, leaf_count, 0,
+#elif EFFECT_TRIANGLES
 #define NO_TRIANGLES(leaf_count) 0, leaf_count,
 #else
 #define NO_TRIANGLES(leaf_count)
@@ -310,7 +312,10 @@ __kernel void probe_turns(SCENE_PARAMETERS uint count, __global const real *rays
         inward = dot3(vec3(directions[3 * item], directions[3 * item + 1], directions[3 * item + 2]), outward) < 0;
     }
 #endif
-    surface_of_triangle(&scene.geometry, &ray, &hit, 1, &point, &outward);
+#if SMOOTH_TRIANGLES
+    Shares shares;
+#endif
+    surface_of_triangle(&scene.geometry, &ray, &hit, 1, WITH_SHARES(&shares) &point, &outward);
     Ray next = ray;
     next.origin = point;
     next.cull_margin = cull_margin_of(&point);
