@@ -26,7 +26,7 @@ class Error(c.Structure):
 class SceneInfo(c.Structure):
     _fields_ = [("title", c.c_char_p), ("source", c.c_char_p), ("width", c.c_uint32), ("height", c.c_uint32),
                 ("samples_per_pixel", c.c_uint32), ("max_depth", c.c_uint32), ("spheres", c.c_size_t),
-                ("materials", c.c_size_t), ("transfer", c.c_int), ("triangles", c.c_size_t)]
+                ("materials", c.c_size_t), ("transfer", c.c_int), ("triangles", c.c_size_t), ("capsules", c.c_size_t)]
 
 
 class RenderOptions(c.Structure):
