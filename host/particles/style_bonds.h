@@ -1,6 +1,6 @@
 /* style_bonds.h: bonds and the cell, as capsules.
  *
- * In:    bonds, particles that are spheres already.   Out: more spheres.
+ * In:    bonds, particles that are spheres already.   Out: capsules.
  * Knows: which bonds can be drawn.   Does not know: how bonds are found (bonds.h). */
 #ifndef BP_PARTICLES_STYLE_BONDS_H
 #define BP_PARTICLES_STYLE_BONDS_H

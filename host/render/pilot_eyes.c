@@ -114,12 +114,9 @@ static void keep_ray(BpPilot *pilot, const BpPilotSegment *segment, const double
 static void keep_glint(BpPilot *pilot, const BpPilotSegment *segment, const BpPilotSegment *next, uint32_t s,
                        size_t square, uint64_t way) {
     const BpScene *scene = pilot->scene;
+    const double back[3] = {-segment->direction[0], -segment->direction[1], -segment->direction[2]};
     BpPilotTurn turn;
-    bp_pilot_normal(scene, segment, turn.normal);
-    for (int a = 0; a < 3; ++a) turn.leaves[a] = -segment->direction[a];
-    bp_normalize(turn.leaves); /* in double: fuzz has a pole at the rim of its lobe */
-    memcpy(turn.point, segment->point, sizeof turn.point);
-    turn.index = bp_pilot_index_behind(scene, segment, turn.normal);
+    bp_pilot_turn_at(scene, segment, back, &turn);
     const uint32_t refracts = bp_dot(next->direction, turn.normal) < 0;
     if (!bp_pilot_turn_smooth(refracts != 0, &turn)) return;
     BpPilotSegment smooth = *next;

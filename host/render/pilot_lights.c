@@ -185,11 +185,7 @@ static bool is_target(const BpScene *scene, const BpPilotAim *aim, size_t shape)
 
 static BpStatus find_targets(const BpScene *scene, BpPilotAim *aim, BpError *err) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    size_t count = 0;
-    for (size_t i = 0; i < bp_scene_shapes(scene); ++i) count += is_target(scene, aim, i);
-    aim->targets = malloc((count > 0 ? count : 1) * sizeof *aim->targets);
-    if (aim->targets == NULL)
-        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the %zu specular shapes", count);
+    size_t capacity = 0;
     for (size_t i = 0; i < bp_scene_shapes(scene); ++i) {
         double center[3];
         const double radius = bp_pilot_ball(scene, i, center);
@@ -197,7 +193,15 @@ static BpStatus find_targets(const BpScene *scene, BpPilotAim *aim, BpError *err
             low[a] = fmin(low[a], center[a] - radius);
             high[a] = fmax(high[a], center[a] + radius);
         }
-        if (is_target(scene, aim, i)) aim->targets[aim->target_count++] = (uint32_t)i;
+        if (!is_target(scene, aim, i)) continue;
+        if (aim->target_count == capacity) {
+            capacity = capacity + capacity / 2 + 64;
+            uint32_t *const targets = realloc(aim->targets, capacity * sizeof *targets);
+            if (targets == NULL)
+                return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu specular shapes", capacity);
+            aim->targets = targets;
+        }
+        aim->targets[aim->target_count++] = (uint32_t)i;
     }
     for (int a = 0; a < 3 && bp_scene_shapes(scene) > 0; ++a) aim->middle[a] = 0.5 * (low[a] + high[a]);
     aim->reach = bp_scene_shapes(scene) > 0 ? 0.5 * sqrt(bp_distance2(low, high)) : 0;

@@ -148,6 +148,19 @@ double bp_pilot_index_behind(const BpScene *scene, const BpPilotSegment *segment
     return bp_dot(normal, outward) > 0 ? inside : 1 / inside;
 }
 
+void bp_pilot_turn_at(const BpScene *scene, const BpPilotSegment *segment, const double leaves[3],
+                      BpPilotTurn *turn) {
+    bp_pilot_normal(scene, segment, turn->normal);
+    const double side = bp_dot(leaves, turn->normal) < 0 ? -1 : 1;
+    memcpy(turn->point, segment->point, sizeof turn->point);
+    for (int a = 0; a < 3; ++a) {
+        turn->normal[a] *= side;
+        turn->leaves[a] = leaves[a];
+    }
+    bp_normalize(turn->leaves); /* in double: fuzz has a pole at the rim of its lobe */
+    turn->index = bp_pilot_index_behind(scene, segment, turn->normal);
+}
+
 const BpMaterial *bp_pilot_material_at(const BpScene *scene, const BpPilotSegment *segment) {
     return bp_pilot_material(scene, segment->shape);
 }

@@ -5,6 +5,7 @@
 #ifndef BP_RENDER_PILOT_PATHS_H
 #define BP_RENDER_PILOT_PATHS_H
 
+#include "pilot_lobes.h"
 #include "worker.h"
 
 #include "pilot_types.h"
@@ -49,6 +50,9 @@ double bp_pilot_carried(const BpPilotFlight *flight, uint32_t path, uint32_t seg
 void bp_pilot_normal(const BpScene *scene, const BpPilotSegment *segment, double normal[3]);
 /* The refraction index behind that surface over the one on the side of `normal`. */
 double bp_pilot_index_behind(const BpScene *scene, const BpPilotSegment *segment, const double normal[3]);
+/* All of a turn but to_light, where a segment ends; `leaves`: of any length. */
+void bp_pilot_turn_at(const BpScene *scene, const BpPilotSegment *segment, const double leaves[3],
+                      BpPilotTurn *turn);
 const BpMaterial *bp_pilot_material_at(const BpScene *scene, const BpPilotSegment *segment);
 /* It ends at a surface that does something to light, be it specular or rough: not at the boundary of a medium
  * alone. */

@@ -66,17 +66,9 @@ static double glints(const BpPilot *pilot, const BpPilotLight *light, const BpPi
     const BpScene *scene = pilot->scene;
     const BpMaterial *material = bp_pilot_material_at(scene, segment);
     BpPilotTurn turn;
-    bp_pilot_normal(scene, segment, turn.normal);
-    const double side = bp_dot(next->direction, turn.normal) < 0 ? -1 : 1;
-    memcpy(turn.point, segment->point, sizeof turn.point);
-    memcpy(turn.leaves, next->direction, sizeof turn.leaves);
-    for (int a = 0; a < 3; ++a) {
-        turn.normal[a] *= side;
-        turn.to_light[a] = -segment->direction[a];
-    }
-    bp_normalize(turn.leaves); /* in double: fuzz has a pole at the rim of its lobe */
+    bp_pilot_turn_at(scene, segment, next->direction, &turn);
+    for (int a = 0; a < 3; ++a) turn.to_light[a] = -segment->direction[a];
     bp_normalize(turn.to_light);
-    turn.index = bp_pilot_index_behind(scene, segment, turn.normal);
     const BpPilotAim *aim = pilot->aim;
     double mean, part = bp_pilot_glint(scene, aim->lights, aim->light_count, light, material, &turn, &mean);
     const double arrives = fabs(bp_dot(turn.to_light, turn.normal));

@@ -1,6 +1,7 @@
 /* pilot_shapes.c: see pilot_shapes.h. */
 #include "pilot_shapes.h"
 
+#include "scene/capsule_way.h"
 #include "scene/triangle_area.h"
 
 #include <math.h>
@@ -36,17 +37,6 @@ double bp_pilot_ball(const BpScene *scene, size_t shape, double center[3]) {
     return fabs(scene->spheres[shape].radius) + 0.5 * sqrt(way);
 }
 
-/* From the point of the axis that is closest. */
-static void outward_of_capsule(const BpCapsule *capsule, const double point[3], double normal[3]) {
-    double axis[3], way[3];
-    bp_way(capsule->ends[0], capsule->ends[1], axis);
-    bp_way(capsule->ends[0], point, way);
-    const double length2 = bp_dot(axis, axis);
-    const double place = length2 > 0 ? fmin(1, fmax(0, bp_dot(way, axis) / length2)) : 0;
-    for (int a = 0; a < 3; ++a) normal[a] = way[a] - place * axis[a];
-    bp_normalize(normal);
-}
-
 void bp_pilot_outward(const BpScene *scene, size_t shape, const double point[3], double time,
                       double normal[3]) {
     const BpTriangle *const triangle = bp_pilot_triangle(scene, shape);
@@ -56,7 +46,8 @@ void bp_pilot_outward(const BpScene *scene, size_t shape, const double point[3],
     }
     const BpCapsule *const capsule = bp_shape_capsule(scene, shape);
     if (capsule != NULL) {
-        outward_of_capsule(capsule, point, normal);
+        bp_capsule_way(capsule, point, normal);
+        bp_normalize(normal);
         return;
     }
     const double *from = scene->spheres[shape].center, *to = bp_sphere_end(scene, shape);

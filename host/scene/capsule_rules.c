@@ -2,8 +2,9 @@
 #include "capsule_rules.h"
 
 #include "base/message_text.h"
+#include "capsule_way.h"
 #include "material.h"
-#include "vector.h"
+#include "shape_rules.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -25,15 +26,6 @@ static bool place_fault(const BpCapsule *capsule, BpFault *fault) {
                         bp_number_text(capsule->radius, text));
 }
 
-/* A texture that lies on surfaces by longitude and latitude. */
-static bool has_map(const BpScene *scene, const BpMaterial *material) {
-    for (int m = 0; m < BP_MEMBER_COUNT; m++) {
-        const uint32_t number = material->texture[m];
-        if (number != 0 && scene->textures[number - 1].mapping == BP_MAPPING_SURFACE) return true;
-    }
-    return false;
-}
-
 bool bp_capsule_material_fault(const BpScene *scene, uint32_t number, BpFault *fault) {
     const BpMaterial *material = &scene->materials[number];
     if (material->kind == BP_MATERIAL_INTERFACE)
@@ -41,33 +33,21 @@ bool bp_capsule_material_fault(const BpScene *scene, uint32_t number, BpFault *f
             fault, BP_FAULT_CAPSULE, "material",
             "found the type \"interface\", expected another: capsules surround no media; use a "
             "sphere as their boundary");
-    if (bp_material_is(material->kind, BP_HAS_INSIDE) && scene->medium_count > 0)
-        return bp_fault_set(fault, BP_FAULT_CAPSULE, "material",
-                            "found glass of capsules in a scene with media, expected one or the other: use "
-                            "spheres of glass, or remove \"media\"");
-    if (material->emit[0] > 0 || material->emit[1] > 0 || material->emit[2] > 0)
+    if (bp_glass_beside_media(scene, material, BP_FAULT_CAPSULE, "capsules", fault)) return true;
+    if (bp_material_emits(material))
         return bp_fault_set(
             fault, BP_FAULT_CAPSULE, "material",
             "found a material that emits, expected another: no rays are sent to capsules; let spheres "
             "or triangles emit");
-    if (has_map(scene, material))
-        return bp_fault_set(
-            fault, BP_FAULT_CAPSULE, "material",
-            "found a texture that is laid around spheres, expected one that fills space: capsules have no "
-            "longitude; change its mapping to \"solid\", or the material");
-    return false;
+    return bp_map_without_longitude(scene, material, BP_FAULT_CAPSULE, "capsules", fault);
 }
 
 /* Whether a point lies on a capsule's surface, as far as can be told. */
 static bool holds_point(const BpCapsule *capsule, const double point[3]) {
-    double axis[3], way[3];
-    for (int a = 0; a < 3; a++) {
-        axis[a] = capsule->ends[1][a] - capsule->ends[0][a];
-        way[a] = point[a] - capsule->ends[0][a];
-    }
-    const double square = bp_dot(axis, axis), size = bp_length(point) + capsule->radius + sqrt(square);
-    const double place = square > 0 ? fmin(1, fmax(0, bp_dot(way, axis) / square)) : 0;
-    for (int a = 0; a < 3; a++) way[a] -= place * axis[a];
+    double way[3];
+    bp_capsule_way(capsule, point, way);
+    const double size =
+        bp_length(point) + capsule->radius + sqrt(bp_distance2(capsule->ends[0], capsule->ends[1]));
     return fabs(bp_length(way) - capsule->radius) <= ON_CAMERA * size;
 }
 
@@ -78,16 +58,10 @@ typedef struct Surface {
     size_t capsule;
 } Surface;
 
-static int compare_points(const double a[3], const double b[3]) {
-    for (int i = 0; i < 3; i++)
-        if (a[i] != b[i]) return a[i] < b[i] ? -1 : 1;
-    return 0;
-}
-
 static int compare_surfaces(const void *a_pointer, const void *b_pointer) {
     const Surface *a = a_pointer, *b = b_pointer;
     for (int k = 0; k < 2; k++) {
-        const int order = compare_points(a->ends[k], b->ends[k]);
+        const int order = bp_compare_points(a->ends[k], b->ends[k]);
         if (order != 0) return order;
     }
     return a->radius < b->radius ? -1 : a->radius > b->radius;
@@ -101,7 +75,7 @@ static BpStatus find_same(const BpScene *scene, size_t glass, BpFault *fault, Bp
     for (size_t i = 0; i < scene->capsule_count; i++) {
         const BpCapsule *capsule = &scene->capsules[i];
         if (!bp_material_is(scene->materials[capsule->material].kind, BP_HAS_INSIDE)) continue;
-        const bool forward = compare_points(capsule->ends[0], capsule->ends[1]) < 0;
+        const bool forward = bp_compare_points(capsule->ends[0], capsule->ends[1]) < 0;
         Surface *surface = &surfaces[count++];
         memcpy(surface->ends[0], capsule->ends[forward ? 0 : 1], sizeof surface->ends[0]);
         memcpy(surface->ends[1], capsule->ends[forward ? 1 : 0], sizeof surface->ends[1]);

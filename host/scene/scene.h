@@ -61,6 +61,10 @@ struct BpMaterial {
     BpTotalReflection total_reflection;
 };
 
+static inline bool bp_material_emits(const BpMaterial *material) {
+    return material->emit[0] > 0 || material->emit[1] > 0 || material->emit[2] > 0;
+}
+
 typedef struct BpSphere {
     double center[3];
     double radius;     /* < 0: inside out */
@@ -212,9 +216,8 @@ struct BpScene {
                                side; all 0: the triangle is flat */
     size_t normal_count;
     BpCapsule *capsules;
-    size_t capsule_count,
-        listed_capsules;     /* those that are not listed come from "particles", or are lines of a caller */
-    BpShapeFile *mesh_files; /* in the order of their triangles */
+    size_t capsule_count, listed_capsules; /* those that are not listed come from "particles" */
+    BpShapeFile *mesh_files;               /* in the order of their triangles */
     size_t mesh_file_count;
     float (*albedos)[3]; /* linear, in [0,1]; of points and triangles that bring their own colour */
     size_t albedo_count;
@@ -299,8 +302,7 @@ static inline uint32_t bp_shape_albedo(const BpScene *scene, size_t shape) {
     return capsule != NULL ? capsule->albedo[0] : scene->triangles[shape - scene->sphere_count].albedo;
 }
 static inline bool bp_shape_emits(const BpScene *scene, size_t shape) {
-    const double *emit = scene->materials[bp_shape_material(scene, shape)].emit;
-    return emit[0] > 0 || emit[1] > 0 || emit[2] > 0;
+    return bp_material_emits(&scene->materials[bp_shape_material(scene, shape)]);
 }
 /* The normals at a triangle's vertices; NULL: it is flat. */
 static inline const float (*bp_triangle_normals(const BpScene *scene, size_t triangle))[3] {

@@ -10,10 +10,6 @@
 
 #include <math.h>
 
-static inline void bp_way(const double from[3], const double to[3], double v[3]) {
-    for (int a = 0; a < 3; a++) v[a] = to[a] - from[a];
-}
-
 /* Twice the area, along the outward normal; returns the longest side. */
 static inline double bp_triangle_area(const BpTriangle *triangle, double area[3]) {
     double b[3], c[3], d[3];

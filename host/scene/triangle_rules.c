@@ -3,6 +3,7 @@
 
 #include "base/message_text.h"
 #include "material.h"
+#include "shape_rules.h"
 #include "triangle_area.h"
 #include "triangle_overlap.h"
 #include "vector.h"
@@ -36,31 +37,14 @@ static bool place_fault(const BpTriangle *triangle, BpFault *fault) {
         "least 1e-9 apart");
 }
 
-/* A texture that lies on surfaces by longitude and latitude. */
-static bool has_map(const BpScene *scene, const BpMaterial *material) {
-    for (int m = 0; m < BP_MEMBER_COUNT; m++) {
-        const uint32_t number = material->texture[m];
-        if (number != 0 && scene->textures[number - 1].mapping == BP_MAPPING_SURFACE) return true;
-    }
-    return false;
-}
-
 static bool kind_fault(const BpScene *scene, size_t index, BpFault *fault) {
     const BpMaterial *material = &scene->materials[scene->triangles[index].material];
     if (material->kind == BP_MATERIAL_INTERFACE)
         return bp_fault_set(fault, BP_FAULT_TRIANGLE, "material",
                             "found the type \"interface\", expected another: media inside triangles are not "
                             "rendered yet; use a sphere as their boundary");
-    if (bp_material_is(material->kind, BP_HAS_INSIDE) && scene->medium_count > 0)
-        return bp_fault_set(fault, BP_FAULT_TRIANGLE, "material",
-                            "found glass of triangles in a scene with media, expected one or the other: use "
-                            "spheres of glass, or remove \"media\"");
-    if (has_map(scene, material))
-        return bp_fault_set(
-            fault, BP_FAULT_TRIANGLE, "material",
-            "found a texture that is laid around spheres, expected one that fills space: triangles have no "
-            "longitude; change its mapping to \"solid\", or the material");
-    return false;
+    return bp_glass_beside_media(scene, material, BP_FAULT_TRIANGLE, "triangles", fault) ||
+           bp_map_without_longitude(scene, material, BP_FAULT_TRIANGLE, "triangles", fault);
 }
 
 /* ---- glass is closed ---- */
@@ -71,17 +55,11 @@ typedef struct Edge {
     uint32_t triangle, material;
 } Edge;
 
-static int compare_points(const double a[3], const double b[3]) {
-    for (int i = 0; i < 3; i++)
-        if (a[i] != b[i]) return a[i] < b[i] ? -1 : 1;
-    return 0;
-}
-
 static int compare_edges(const void *a_pointer, const void *b_pointer) {
     const Edge *a = a_pointer, *b = b_pointer;
     if (a->material != b->material) return a->material < b->material ? -1 : 1;
     for (int i = 0; i < 2; i++) {
-        const int order = compare_points(a->ends[i], b->ends[i]);
+        const int order = bp_compare_points(a->ends[i], b->ends[i]);
         if (order != 0) return order;
     }
     return a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
@@ -102,7 +80,7 @@ static BpStatus find_open_edge(const BpScene *scene, size_t glass, BpFault *faul
         for (int k = 0; k < 3; k++) {
             const double *from = scene->triangles[i].vertices[k],
                          *to = scene->triangles[i].vertices[(k + 1) % 3];
-            const bool forward = compare_points(from, to) < 0;
+            const bool forward = bp_compare_points(from, to) < 0;
             Edge *edge = &edges[count++];
             edge->way = forward ? 1 : -1;
             memcpy(edge->ends[0], forward ? from : to, sizeof edge->ends[0]);
@@ -115,8 +93,8 @@ static BpStatus find_open_edge(const BpScene *scene, size_t glass, BpFault *faul
     for (size_t first = 0, end; first < count && fault->subject == BP_FAULT_NONE; first = end) {
         int sum = 0;
         for (end = first; end < count && edges[end].material == edges[first].material &&
-                          compare_points(edges[end].ends[0], edges[first].ends[0]) == 0 &&
-                          compare_points(edges[end].ends[1], edges[first].ends[1]) == 0;
+                          bp_compare_points(edges[end].ends[0], edges[first].ends[0]) == 0 &&
+                          bp_compare_points(edges[end].ends[1], edges[first].ends[1]) == 0;
              end++)
             sum += edges[end].way;
         if (sum == 0) continue;

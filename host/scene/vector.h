@@ -1,6 +1,6 @@
 /* vector.h: products and lengths of three doubles.
  *
- * In and out: vectors as arrays.   Knows: nothing.   Does not know: what they stand for. */
+ * In and out: vectors and points as arrays.   Knows: nothing.   Does not know: what they stand for. */
 #ifndef BP_SCENE_VECTOR_H
 #define BP_SCENE_VECTOR_H
 
@@ -19,6 +19,10 @@ static inline double bp_distance2(const double a[3], const double b[3]) {
     double sum = 0;
     for (int i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
     return sum;
+}
+
+static inline void bp_way(const double from[3], const double to[3], double v[3]) {
+    for (int a = 0; a < 3; a++) v[a] = to[a] - from[a];
 }
 
 /* `out` may be `a` or `b`. */

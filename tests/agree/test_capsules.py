@@ -7,13 +7,9 @@ Run as: python3 test_capsules.py PROGRAM SOURCE_DIR
 """
 
 import json
-import pathlib
-import struct
-import subprocess
-import tempfile
-import unittest
 
 import cli
+from scene_pictures import ScenePictures
 
 MATERIALS = {
     "clay": {"type": "lambertian", "albedo": [0.8, 0.5, 0.3]}, "glass": {"type": "dielectric", "refraction_index": 1.5},
@@ -34,34 +30,14 @@ def bar(material, **members):
     return {**BAR, "material": material, **members}
 
 
-class Capsules(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.path = pathlib.Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def run_ballpark(self, document, *arguments):
-        (self.path / "s.json").write_text(json.dumps(document))
-        return subprocess.run([cli.PROGRAM, arguments[0], "s.json", *arguments[1:]], cwd=self.path, capture_output=True, text=True, check=False)
-
-    def render(self, document, *options):
-        """The bytes of the picture, and its numbers."""
-        made = self.run_ballpark(document, "render", "-o", "out.pfm", "--force", "--quiet", *options)
-        self.assertEqual(made.returncode, 0, made.stderr)
-        data = (self.path / "out.pfm").read_bytes()
-        _, size, _, rest = data.split(b"\n", 3)
-        width, height = map(int, size.split())
-        return data, struct.unpack(f"<{3 * width * height}f", rest)
-
+class Capsules(ScenePictures):
     def test_forms(self):
         document = scene(spheres=[{"center": [0.3, 0.5, 1], "radius": 0.2, "material": "glass"}],
                          triangles=[{"vertices": [[-1, -0.6, 1], [1, -0.6, 1], [0, -0.6, -2]], "material": "clay"}],
                          capsules=[bar("mirror"), {"ends": [[0.8, -0.5, 0.5], [0.8, 0.5, 0.5]], "radius": 0.15, "material": "glass"},
                                    {"ends": [[-0.9, -0.45, 0.4], [0.2, -0.45, 0.9]], "radius": 0.15, "material": "clay"}])
         for numerics in ("robust", "plain"):
-            first, _ = self.render(document, "--numerics", numerics)
+            first, *_ = self.render(document, "--numerics", numerics)
             for options in (("--kernel", "sample"), ("--kernel", "pool"), ("--effects", "all")):
                 self.assertEqual(self.render(document, "--numerics", numerics, *options)[0], first, f"{numerics} {options}: other bits")
 
@@ -69,7 +45,7 @@ class Capsules(unittest.TestCase):
     def test_furnaces(self):
         white = {"background": [1, 1, 1]}
         for material, colour in (("clay", (0.8, 0.5, 0.3)), ("mirror", (0.9, 0.7, 0.5)), ("glass", (1, 1, 1))):
-            _, values = self.render(scene(capsules=[bar(material)], **white))
+            *_, values = self.render(scene(capsules=[bar(material)], **white))
             for channel in range(3):
                 ends = sorted({round(value, 5) for value in values[channel::3]})
                 self.assertAlmostEqual(ends[0], colour[channel], delta=2e-5, msg=material)
@@ -77,16 +53,16 @@ class Capsules(unittest.TestCase):
 
     # Rays pass straight on, so a gradient looks as if nothing were there.
     def test_index_one(self):
-        _, seen = self.render(scene(capsules=[bar("air")]))
-        _, empty = self.render(scene())
+        *_, seen = self.render(scene(capsules=[bar("air")]))
+        *_, empty = self.render(scene())
         for one, other in zip(seen, empty):
             self.assertAlmostEqual(one, other, delta=1e-5)
 
     def test_no_length(self):
         end = BAR["ends"][0]
         for material in ("clay", "glass", "mirror"):
-            capsule, _ = self.render(scene(capsules=[{"ends": [end, end], "radius": 0.6, "material": material}]))
-            sphere, _ = self.render(scene(spheres=[{"center": end, "radius": 0.6, "material": material}]))
+            capsule, *_ = self.render(scene(capsules=[{"ends": [end, end], "radius": 0.6, "material": material}]))
+            sphere, *_ = self.render(scene(spheres=[{"center": end, "radius": 0.6, "material": material}]))
             self.assertEqual(capsule, sphere, material)
 
     # Where it lies is read back from where it is seen along the axes.
@@ -94,7 +70,7 @@ class Capsules(unittest.TestCase):
         square = {"image_width": 200, "aspect_ratio": 1, "samples_per_pixel": 1, "pixel_sampling": "center", "max_depth": 1, "projection": "orthographic",
                   "view_height": 4, "lookfrom": [0, 0, 9], "lookat": [0, 0, 0]}
         ends, radius = [[-1.2, -0.4, 0.7], [0.9, 1.1, -0.5]], 0.35
-        _, values = self.render(scene(camera=square, background=[1, 1, 1], capsules=[{"ends": ends, "radius": radius, "material": "clay"}]))
+        *_, values = self.render(scene(camera=square, background=[1, 1, 1], capsules=[{"ends": ends, "radius": radius, "material": "clay"}]))
         wrong = 0
         for row in range(200):
             for column in range(200):

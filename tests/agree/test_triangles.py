@@ -9,14 +9,10 @@ Run as: python3 test_triangles.py PROGRAM SOURCE_DIR
 
 import json
 import math
-import pathlib
 import re
-import struct
-import subprocess
-import tempfile
-import unittest
 
 import cli
+from scene_pictures import ScenePictures
 
 MATERIALS = {
     "white": {"type": "lambertian", "albedo": [0.73, 0.73, 0.73]}, "mint": {"type": "lambertian", "albedo": [0.2, 0.8, 0.5]},
@@ -47,27 +43,7 @@ ALONE = scene(quads=[FLOOR, {"corner": [-1.5, 0.2, -1], "u": [3, 0, 0], "v": [0,
                      {"corners": [[-1, 0, 0], [-0.2, 0.8, 0.8]], "material": "mirror"}])
 
 
-class Triangles(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.path = pathlib.Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def run_ballpark(self, document, *arguments):
-        (self.path / "s.json").write_text(json.dumps(document))
-        return subprocess.run([cli.PROGRAM, arguments[0], "s.json", *arguments[1:]], cwd=self.path, capture_output=True, text=True, check=False)
-
-    def render(self, document, *options):
-        """The bytes of the picture, its rows from below, and its pixels."""
-        made = self.run_ballpark(document, "render", "-o", "out.pfm", "--force", "--quiet", *options)
-        self.assertEqual(made.returncode, 0, made.stderr)
-        data = (self.path / "out.pfm").read_bytes()
-        _, size, _, rest = data.split(b"\n", 3)
-        width, height = map(int, size.split())
-        return data, width, height, struct.unpack(f"<{3 * width * height}f", rest)
-
+class Triangles(ScenePictures):
     def test_forms(self):
         for document in (MIXED, ALONE):
             first, *_ = self.render(document, "--kernel", "packet")

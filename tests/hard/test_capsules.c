@@ -34,16 +34,6 @@ static BpCapsule *add(const double from[3], const double way[3], double radius) 
     return capsule;
 }
 
-static void aim(double *ray, const double from[3], const double to[3]) {
-    memset(ray, 0, RAY_REALS * sizeof *ray);
-    for (int a = 0; a < 3; ++a) {
-        ray[RAY_HIGH + a] = fine ? from[a] : lab_float(from[a]);
-        ray[RAY_LOW + a] = fine ? 0 : lab_float(from[a] - ray[RAY_HIGH + a]);
-        ray[RAY_DIRECTION + a] = to[a] - from[a];
-    }
-    lab_float_unit(ray + RAY_DIRECTION);
-}
-
 static void run(const Lab *lab) {
     BpWorker *worker = turns_capsules(lab, capsules, capsule_count);
     lab_unit_rays(lab, RAYS, rays);
@@ -189,7 +179,7 @@ static void aim_at_capsule(double *ray, const BpCapsule *capsule, double distanc
                 impact * capsule->radius * x[a] / across;
         from[a] = to[a] - distance * u[a];
     }
-    aim(ray, from, to);
+    turns_aim(fine, ray, from, to);
 }
 
 /* ---- the cases: true where the value is right ---- */
@@ -247,7 +237,7 @@ static bool along_its_axis(const Lab *lab) {
     add(from, way, 0.125);
     for (size_t i = 0; i < RAYS; ++i) {
         const double start[3] = {0.25, -0.5, i % 2 == 0 ? 4.0 : -7.0}, to[3] = {0.25, -0.5, -2};
-        aim(rays + i * RAY_REALS, start, to);
+        turns_aim(fine, rays + i * RAY_REALS, start, to);
     }
     go_on();
     run(lab);
@@ -340,7 +330,7 @@ static bool mean_chord(const Lab *lab) {
                 to[a] = across * x[a];
                 start[a] = to[a] - 3 * u[a];
             }
-            aim(rays + i * RAY_REALS, start, to);
+            turns_aim(fine, rays + i * RAY_REALS, start, to);
         }
         go_on();
         run(lab);

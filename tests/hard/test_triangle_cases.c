@@ -46,17 +46,6 @@ static double between(double low, double high) {
 
 static bool fine; /* a ray's numbers are doubles, whose low part is at most half a unit of the high part */
 
-/* From a place towards a point. */
-static void aim(double *ray, const double from[3], const double to[3]) {
-    memset(ray, 0, RAY_REALS * sizeof *ray);
-    for (int a = 0; a < 3; ++a) {
-        ray[RAY_HIGH + a] = fine ? from[a] : lab_float(from[a]);
-        ray[RAY_LOW + a] = fine ? 0 : lab_float(from[a] - ray[RAY_HIGH + a]);
-        ray[RAY_DIRECTION + a] = to[a] - from[a];
-    }
-    lab_float_unit(ray + RAY_DIRECTION);
-}
-
 static void run(const Lab *lab) {
     BpWorker *worker = turns_worker(lab, &ball, ball_count, triangles, triangle_count);
     lab_unit_rays(lab, RAYS, rays);
@@ -110,7 +99,7 @@ static void aim_at_triangle(double *ray, const double from[3], double more) {
     const double b = between(-more, 1 + more), c = between(-more, 1 + more);
     double to[3];
     for (int a = 0; a < 3; ++a) to[a] = v[0][a] + b * (v[1][a] - v[0][a]) + c * (v[2][a] - v[0][a]);
-    aim(ray, from, to);
+    turns_aim(fine, ray, from, to);
 }
 
 /* ---- the cases: true where the value is right ---- */
@@ -149,7 +138,7 @@ static bool ground(const Lab *lab) {
     for (size_t i = 0; i < RAYS; ++i) {
         const double far = pow(10, between(-1, 5.8)), turn = between(0, 6.283185307179586);
         const double to[3] = {far * cos(turn), far * sin(turn), -1}, from[3] = {0, 0, 0};
-        aim(rays + i * RAY_REALS, from, to);
+        turns_aim(fine, rays + i * RAY_REALS, from, to);
     }
     run(lab);
     return judge(lab, "a ground of 2e6, 1 below", score(0), RAYS, 5e-7);
@@ -174,7 +163,7 @@ static bool leaning_ground(const Lab *lab) {
             to[a] = (double)((Wide)ground_triangle->vertices[0][a] + (Wide)s * u[a] + (Wide)t * v[a]);
             from[a] = to[a] + between(-1, 1) + (a == 1 ? 2 : 0);
         }
-        aim(rays + i * RAY_REALS, from, to);
+        turns_aim(fine, rays + i * RAY_REALS, from, to);
     }
     run(lab);
     for (size_t i = 0; i < RAYS; ++i) {
@@ -259,7 +248,7 @@ static bool in_its_plane(const Lab *lab) {
     for (size_t i = 0; i < RAYS; ++i) {
         const double from[3] = {between(-3, 3), between(-3, 3), 0.5};
         const double to[3] = {between(0, 1), between(0, 1), 0.5};
-        aim(rays + i * RAY_REALS, from, to);
+        turns_aim(fine, rays + i * RAY_REALS, from, to);
         if (i % 4 == 0) { /* along an edge */
             rays[i * RAY_REALS + RAY_HIGH + 1] = rays[i * RAY_REALS + RAY_LOW + 1] = 0;
             rays[i * RAY_REALS + RAY_DIRECTION] = i % 8 == 0 ? 1 : -1;
@@ -280,7 +269,7 @@ static bool grazing(const Lab *lab) {
         const double turn = between(0, 6.283185307179586), height = 1e-7 * between(0, 3);
         const double from[3] = {-cos(turn) * 1.5, -sin(turn) * 1.5, height},
                      to[3] = {from[0] + cos(turn), from[1] + sin(turn), height - 1e-7};
-        aim(rays + i * RAY_REALS, from, to);
+        turns_aim(fine, rays + i * RAY_REALS, from, to);
     }
     run(lab);
     return judge(lab, "grazing by 1e-7", score(1e-5), RAYS / 4, 1e-6);
@@ -363,7 +352,7 @@ static bool no_thickness(const Lab *lab) {
         lab_direction(&state, way);
         way[2] = i % 4 < 2 ? fabs(way[2]) + 0.1 : -fabs(way[2]) - 0.1;
         for (int a = 0; a < 3; ++a) way[a] += from[a];
-        aim(ray, from, way);
+        turns_aim(fine, ray, from, way);
         ray[RAY_LOW + 2] = height;
     }
     run(lab);
@@ -388,7 +377,7 @@ static bool edges_of_boxes(const Lab *lab) {
         double to[3];
         for (int a = 0; a < 3; ++a) to[a] = v[0][a] + s * (v[1 + i % 2][a] - v[0][a]);
         if (fabs(to[0]) > 0.99 || fabs(to[1]) > 0.99) to[0] = to[1] = 0;
-        aim(rays + i * RAY_REALS, from, to);
+        turns_aim(fine, rays + i * RAY_REALS, from, to);
     }
     run(lab);
     size_t lost = 0;
@@ -413,7 +402,7 @@ static bool concave_edge(const Lab *lab) {
                          from[3] = {0.5 * cos(part), between(-0.5, 0.5), 0.5 * sin(part)};
             const double to[3] = {0, between(-0.9, 0.9), 0};
             double *d = directions + 3 * i;
-            aim(rays + i * RAY_REALS, from, to);
+            turns_aim(fine, rays + i * RAY_REALS, from, to);
             lab_direction(&state, d);
             d[1] *= 0.1; /* so that it ends at the planes and not beside them */
             lab_float_unit(d);
@@ -453,7 +442,7 @@ static bool left_plane(const Lab *lab, const char *what) {
         double to[3];
         for (int a = 0; a < 3; ++a) to[a] = v[0][a] + s * (v[1 + i % 2][a] - v[0][a]);
         if (fabs(to[0]) > 0.99 || fabs(to[1]) > 0.99) to[0] = to[1] = 0;
-        aim(rays + i * RAY_REALS, from, to);
+        turns_aim(fine, rays + i * RAY_REALS, from, to);
         lab_direction(&state, directions + 3 * i);
         if (i % 4 == 0) directions[3 * i + 2] *= 1e-4;
         lab_float_unit(directions + 3 * i);
@@ -528,7 +517,7 @@ static bool leave_ball(const Lab *lab, const char *what, size_t faces, const dou
             to[a] = at[face][a] + part * (way[a] - lean * n[a]) / sqrt(1 - lean * lean);
             if (i % 4 == 0) d[a] += (1e-4 - 1) * down * n[a]; /* grazing */
         }
-        aim(rays + i * RAY_REALS, from, to);
+        turns_aim(fine, rays + i * RAY_REALS, from, to);
         lab_float_unit(d);
     }
     run(lab);

@@ -1,6 +1,8 @@
 /* turns.c: what turns.h promises. */
 #include "turns.h"
 
+#include <string.h>
+
 static BpWorker *make_worker(const Lab *lab, const BpScene *shapes) {
     BpMaterial matte = {.name = (char *)"matte", .kind = BP_MATERIAL_LAMBERTIAN, .albedo = {0.5, 0.5, 0.5}};
     BpScene scene = *shapes;
@@ -25,6 +27,16 @@ BpWorker *turns_worker(const Lab *lab, const BpSphere *spheres, size_t sphere_co
 BpWorker *turns_capsules(const Lab *lab, const BpCapsule *capsules, size_t count) {
     const BpScene scene = {.capsules = (BpCapsule *)(uintptr_t)capsules, .capsule_count = count};
     return make_worker(lab, &scene);
+}
+
+void turns_aim(bool fine, double *ray, const double from[3], const double to[3]) {
+    memset(ray, 0, RAY_REALS * sizeof *ray);
+    for (int a = 0; a < 3; ++a) {
+        ray[RAY_HIGH + a] = fine ? from[a] : lab_float(from[a]);
+        ray[RAY_LOW + a] = fine ? 0 : lab_float(from[a] - ray[RAY_HIGH + a]);
+        ray[RAY_DIRECTION + a] = to[a] - from[a];
+    }
+    lab_float_unit(ray + RAY_DIRECTION);
 }
 
 void turns_run(const Lab *lab, BpWorker *worker, size_t rays_count, const double *rays,

@@ -20,6 +20,8 @@ BpWorker *turns_worker(const Lab *lab, const BpSphere *spheres, size_t sphere_co
                        const BpTriangle *triangles, size_t count);
 /* The same for capsules alone, which it numbers from 0. */
 BpWorker *turns_capsules(const Lab *lab, const BpCapsule *capsules, size_t count);
+/* A ray from a place towards a point. `fine`: its numbers are doubles, else pairs of floats. */
+void turns_aim(bool fine, double *ray, const double from[3], const double to[3]);
 /* `directions`: 3 floats a ray, of any length near 1. */
 void turns_run(const Lab *lab, BpWorker *worker, size_t rays_count, const double *rays,
                const double *directions, double *out);

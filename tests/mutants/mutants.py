@@ -1853,7 +1853,7 @@ MUTANTS = [
            [patch("host/packed/tree_write.c", "const double low = fmin(center[a], center[a] + axis), high = fmax(center[a], center[a] + axis);",
                   "const double low = center[a], high = center[a];")], [hard_capsules()]),
     Mutant("capsules of glass in one place", "scene: ends are not put in order",
-           [patch("host/scene/capsule_rules.c", "const bool forward = compare_points(capsule->ends[0], capsule->ends[1]) < 0;", "const bool forward = true;")],
+           [patch("host/scene/capsule_rules.c", "const bool forward = bp_compare_points(capsule->ends[0], capsule->ends[1]) < 0;", "const bool forward = true;")],
            [capsules("refusals")]),
     Mutant("a triangle's normal points inward", "triangles: the sides of the cross product exchanged",
            [patch("kernels/shape/triangle_robust.cl", "*normal = wide_unit(wide_cross(to_b, to_c));", "*normal = wide_unit(wide_cross(to_c, to_b));")],
