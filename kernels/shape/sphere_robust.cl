@@ -57,6 +57,18 @@ FORCE_INLINE static vbool sphere_is_candidate(const Ray *ray, vreal bound, const
     return room >= outside * outside;
 }
 
+/* A ball that was chosen on a capsule's axis has a centre that is finer than a real, and whether the ray begins inside was
+ * decided with it. */
+#if EFFECT_CAPSULES
+#define CENTRE_REFINED(a) (to_refined(c.a) + to_refined(sphere->low.a))
+#define CENTRE_ERROR(a, error) ((error) + sphere->low.a)
+#define BEGINS_INSIDE(within) (sphere->inside | ((within) & vbool_not(sphere->is_capsule)))
+#else
+#define CENTRE_REFINED(a) to_refined(c.a)
+#define CENTRE_ERROR(a, error) error
+#define BEGINS_INSIDE(within) within
+#endif
+
 typedef struct Roots {
     vrefined near, far;
     vrefined middle;     /* p: negative when the sphere's centre lies behind */
@@ -74,16 +86,9 @@ FORCE_INLINE static Roots sphere_roots(const Ray *ray, const Sphere *sphere) {
     const Point *o = &ray->origin;
     const Vec3 d = ray->direction, c = sphere->centre;
     const vrefined dx = to_refined(d.x), dy = to_refined(d.y), dz = to_refined(d.z);
-#if EFFECT_CAPSULES
-    const Vec3 low = sphere->low;
-    const vrefined ocx = (to_refined(c.x) + to_refined(low.x)) - (to_refined(o->high.x) + to_refined(o->low.x));
-    const vrefined ocy = (to_refined(c.y) + to_refined(low.y)) - (to_refined(o->high.y) + to_refined(o->low.y));
-    const vrefined ocz = (to_refined(c.z) + to_refined(low.z)) - (to_refined(o->high.z) + to_refined(o->low.z));
-#else
-    const vrefined ocx = to_refined(c.x) - (to_refined(o->high.x) + to_refined(o->low.x));
-    const vrefined ocy = to_refined(c.y) - (to_refined(o->high.y) + to_refined(o->low.y));
-    const vrefined ocz = to_refined(c.z) - (to_refined(o->high.z) + to_refined(o->low.z));
-#endif
+    const vrefined ocx = CENTRE_REFINED(x) - (to_refined(o->high.x) + to_refined(o->low.x));
+    const vrefined ocy = CENTRE_REFINED(y) - (to_refined(o->high.y) + to_refined(o->low.y));
+    const vrefined ocz = CENTRE_REFINED(z) - (to_refined(o->high.z) + to_refined(o->low.z));
     /* d.d = 1 + e with |e| of a few ROUNDOFF: 1 / d.d = 1 - e + e e, to the cube of e */
     const vrefined e = fma(dx, dx, fma(dy, dy, fma(dz, dz, splat_refined(-1))));
     const vrefined inverse = fma(e, e - splat_refined(1), splat_refined(1));
@@ -127,15 +132,9 @@ FORCE_INLINE static Roots sphere_roots(const Ray *ray, const Sphere *sphere) {
     const Vec3 high = ray->origin.high, low = ray->origin.low, d = ray->direction, c = sphere->centre;
     const vreal radius = sphere->radius;
     const Vec3 oc = subtract3(c, high);
-#if EFFECT_CAPSULES
-    const vreal ex = (sum_error(c.x, -high.x, oc.x) - low.x) + sphere->low.x;
-    const vreal ey = (sum_error(c.y, -high.y, oc.y) - low.y) + sphere->low.y;
-    const vreal ez = (sum_error(c.z, -high.z, oc.z) - low.z) + sphere->low.z;
-#else
-    const vreal ex = sum_error(c.x, -high.x, oc.x) - low.x;
-    const vreal ey = sum_error(c.y, -high.y, oc.y) - low.y;
-    const vreal ez = sum_error(c.z, -high.z, oc.z) - low.z;
-#endif
+    const vreal ex = CENTRE_ERROR(x, sum_error(c.x, -high.x, oc.x) - low.x);
+    const vreal ey = CENTRE_ERROR(y, sum_error(c.y, -high.y, oc.y) - low.y);
+    const vreal ez = CENTRE_ERROR(z, sum_error(c.z, -high.z, oc.z) - low.z);
     const vreal inverse = splat(2) - dot3(d, d);
     const vreal p1 = dot3(oc, d) * inverse;
     Vec3 l = add3(madd3(-p1, d, oc), vec3(ex, ey, ez));
@@ -168,14 +167,8 @@ FORCE_INLINE static Roots sphere_roots(const Ray *ray, const Sphere *sphere) {
  * towards the centre the ray enters at the near root, and an entry that rounding put behind the origin counts as 0. */
 FORCE_INLINE static vbool sphere_intersect(const Ray *ray, const Sphere *sphere, vrefined *t, vbool *enters) {
     const Roots roots = sphere_roots(ray, sphere);
-#if EFFECT_CAPSULES
-    const vbool within =
-        vbool_of_refined(roots.near * roots.far < to_refined(sphere->radius * ray->origin.error) * splat_refined(-2));
-    const vbool inside = sphere->inside | (within & vbool_not(sphere->is_capsule));
-#else
-    const vbool inside =
-        vbool_of_refined(roots.near * roots.far < to_refined(sphere->radius * ray->origin.error) * splat_refined(-2));
-#endif
+    const vbool inside = BEGINS_INSIDE(
+        vbool_of_refined(roots.near * roots.far < to_refined(sphere->radius * ray->origin.error) * splat_refined(-2)));
     const vbool ahead = vbool_of_refined(roots.middle > splat_refined(0));
     const vrefined entry =
         choose_refined(vbool_of_refined(roots.near > splat_refined(0)), roots.near, splat_refined(0));

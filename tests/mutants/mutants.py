@@ -1841,7 +1841,7 @@ MUTANTS = [
            [patch(KERNEL, "choose_refined(sphere->is_capsule, roots.far, roots.middle + roots.middle)", "roots.middle + roots.middle")],
            [hard_capsules()]),
     Mutant("inside a capsule by its near ball", "capsules: the near ball's power for the capsule's",
-           [patch(KERNEL, "const vbool inside = sphere->inside | (within & vbool_not(sphere->is_capsule));", "const vbool inside = within;")],
+           [patch(KERNEL, "#define BEGINS_INSIDE(within) (sphere->inside | ((within) & vbool_not(sphere->is_capsule)))", "#define BEGINS_INSIDE(within) within")],
            [hard_capsules()]),
     Mutant("capsules ruled out by their first end", "capsules: a candidate's place on the axis left out",
            [patch(KERNEL, "const Vec3 off = loose_madd3(place, across, l);", "const Vec3 off = l;")], [hard_capsules()]),
