@@ -1,7 +1,7 @@
 /* pilot_eyes.c: the camera's paths of a pilot: to the first rough point, and past lights.
  *
  * In:    a scene, a device.
- * Out:   the rough points, the rays behind mirrors and glass, and lights that are seen directly.
+ * Out:   the rough points, the rays behind mirrors, glass and narrow lobes, and lights seen directly.
  * Knows: how far apart paths are.   Does not know: what light comes from elsewhere. */
 #include "pilot_shapes.h"
 #include "pilot_state.h"
