@@ -3,7 +3,9 @@
 trials, and fails when one survives. What was not killed is named once more at the end.
 
 usage: test_mutants.py SOURCE_DIR BUILD_DIR RESULT.json [NAME...]
-       test_mutants.py --fit SOURCE_DIR BUILD_DIR      only whether every patch still finds its place
+       test_mutants.py --changed SOURCE_DIR BUILD_DIR RESULT.json    those whose texts changed since their kept kill, and an eighth
+       test_mutants.py --keep SOURCE_DIR BUILD_DIR RESULT.json       all, and keeps the kills in tests/mutants/kills.json
+       test_mutants.py --fit SOURCE_DIR BUILD_DIR                    only whether every patch still finds its place
 
 Kernel text is patched in a copy that the program reads through BALLPARK_KERNELS. Host text is patched in a copy,
 compiled with the command that built the product, and linked before the library. A build that fails, a crash, or a
@@ -29,6 +31,7 @@ import tempfile
 import threading
 import time
 
+import kills
 from mutants import MUTANTS, Check, Program, Script
 
 SURVIVED, KILLED, ERROR = "SURVIVED", "killed", "ERROR"
@@ -316,14 +319,39 @@ def last_words(rows, failed_controls):
     return [*failed_controls, *([f"{len(left)} mutants were not killed:"] if left else []), *map(line_of, left)]
 
 
+def fingerprints_of(source, build):
+    """{name: fingerprint} of all mutants that fit; one that does not is an error where it is tried."""
+    found = {}
+    with tempfile.TemporaryDirectory() as folder:
+        bench = Bench(source, build, folder)
+        fingerprints = kills.Fingerprints(source, list(bench.compile.values()))
+        for mutant in MUTANTS:
+            try:
+                found[mutant.name] = fingerprints.of(mutant, bench.patched_texts(mutant))
+            except LookupError:
+                pass
+    return found
+
+
+def chosen(mutants, fingerprints, kept, commit):
+    """Those that are tried: without a kill that still stands, or having their turn."""
+    return [m for m in mutants
+            if m.name not in fingerprints or kept.get(m.name) != fingerprints[m.name] or kills.has_its_turn(m.name, commit)]
+
+
 def main():
     if sys.argv[1] == "--fit":
         return fit(os.path.realpath(sys.argv[2]), os.path.realpath(sys.argv[3]))
-    source, build, result_path, *names = sys.argv[1:]
+    options = [argument for argument in sys.argv[1:] if argument in ("--changed", "--keep")]
+    source, build, result_path, *names = [argument for argument in sys.argv[1:] if argument not in options]
     source, build = os.path.realpath(source), os.path.realpath(build)
+    kept_path = os.path.join(source, "tests/mutants/kills.json")
     mutants = [m for m in MUTANTS if not names or m.name in names]
     if unknown := set(names) - {m.name for m in mutants}:
         sys.exit(f"no such mutant: {', '.join(sorted(unknown))}")
+    fingerprints = fingerprints_of(source, build)
+    if "--changed" in options:
+        mutants = chosen(mutants, fingerprints, kills.load(kept_path), kills.commit_of(source))
     start = time.monotonic()
     rows = []
     with tempfile.TemporaryDirectory() as kept:
@@ -335,12 +363,15 @@ def main():
     killed = sum(row["outcome"] == KILLED for row in rows)
     with open(result_path, "w", encoding="utf-8") as file:
         json.dump({"mutants": rows, "control_failures": len(wrong)}, file, indent=1)
+    if "--keep" in options:
+        kills.save(kept_path, {row["name"]: fingerprints[row["name"]] for row in rows if row["outcome"] == KILLED})
     longest = sorted(rows, key=lambda row: -row["seconds"])[:LONGEST]
     print("longest:", ", ".join(f"{row['name']} {row['seconds']:.0f} s" for row in longest))
     for line in last_words(rows, wrong):
         print(line)
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    print(f"{killed} of {len(rows)} mutants killed in {time.monotonic() - start:.0f} s, "
+    left_out = f" ({len(MUTANTS) - len(rows)} stand by their kept kills)" if "--changed" in options else ""
+    print(f"{killed} of {len(rows)} mutants killed{left_out} in {time.monotonic() - start:.0f} s, "
           f"{used.ru_utime + used.ru_stime:.0f} s of processor time; {len(wrong)} trials fail on the product itself")
     return 0 if killed == len(rows) and not wrong else 1
 
