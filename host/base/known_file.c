@@ -70,6 +70,8 @@ static const Known known[] = {{{BP_FILE_SUMS, "the sums of a render (.bpa)"}, BE
                               {{BP_FILE_POINTS, "a text"}, NAMED(".dat")},
                               {{BP_FILE_POINTS, "a text"}, NAMED(".txt")},
                               {{BP_FILE_MESH, "a mesh (OBJ)"}, NAMED(".obj")},
+                              {{BP_FILE_MESH, "a mesh (glTF)"}, NAMED(".gltf")},
+                              {{BP_FILE_MESH, "a mesh (glTF)"}, NAMED(".glb")},
                               {{BP_FILE_MESH, "the materials of a mesh (MTL)"}, NAMED(".mtl")},
                               {{BP_FILE_MESH, "a mesh (STL)"}, NAMED(".stl")},
                               {{BP_FILE_MESH, "a mesh (OFF)"}, NAMED(".off")},
@@ -125,7 +127,8 @@ const char *bp_known_file_remedy(const BpKnownFile *file) {
         return " or a file of particles in a format of docs/PARTICLES.md; convert it, to CSV or PLY for "
                "example";
     case BP_FILE_MESH:
-        return "; give the path of a file named .ply, .obj, .stl or .off, with its MTL files beside it, or "
+        return "; give the path of a file named .ply, .obj, .stl, .off, .gltf or .glb, with its MTL files "
+               "beside it, or "
                "name it in "
                "a scene's \"meshes\"";
     case BP_FILE_SOURCE:

@@ -72,6 +72,17 @@ static json_t *matte(const double kd[3], const double ke[3]) {
     return material;
 }
 
+/* The metallic and rough surfaces of glTF: metals, or a base under a coat of index 1.5. */
+static json_t *surface(const BpMeshMaterial *offer) {
+    const double *const kd = offer->has_kd ? offer->kd : clay;
+    json_t *const material =
+        json_pack("{ss, s[fff], sf}", "type", offer->metallic >= 0.5 ? "metal" : "glossy", "albedo", kd[0],
+                  kd[1], kd[2], "roughness", offer->roughness);
+    if (material != NULL && offer->metallic < 0.5 && offer->has_ni && offer->ni > 1)
+        json_object_set_new(material, "refraction_index", json_real(fmin(offer->ni, 3)));
+    return material;
+}
+
 /* What the mesh's material `number` becomes. `note` gets those that are not closed. */
 static BpStatus offered(const BpMesh *mesh, uint32_t number, const BpMeshUse *own, json_t **material,
                         char *note, BpError *err) {
@@ -81,21 +92,26 @@ static BpStatus offered(const BpMesh *mesh, uint32_t number, const BpMeshUse *ow
         BpMeshEdge edge;
         BP_TRY(bp_mesh_find_part_edge(mesh, own, number, &edge, err));
         if (edge.fault == BP_MESH_EDGE_GOOD) {
+            const bool rough = offer->has_surface && offer->roughness > 0;
             *material = json_pack("{ss, sf}", "type", "dielectric", "refraction_index",
-                                  offer->has_ni && offer->ni > 1 ? fmin(offer->ni, 100) : 1.5);
+                                  offer->has_ni && offer->ni > 1 ? fmin(offer->ni, rough ? 10 : 100) : 1.5);
+            if (rough) json_object_set_new(*material, "roughness", json_real(offer->roughness));
             return BP_OK;
         }
-        snprintf(
-            note, BP_DOCUMENT_NOTE_SIZE,
-            "the material \"%.80s\" is matte, although its d is %g: its faces are not closed, as glass must "
-            "be",
-            offer->name, offer->d);
+        snprintf(note, BP_DOCUMENT_NOTE_SIZE,
+                 "the material \"%.80s\" lets no light in, although its opacity is %g: its faces are not "
+                 "closed, as glass must "
+                 "be",
+                 offer->name, offer->d);
     }
-    *material = matte(offer->has_kd ? offer->kd : clay, offer->has_ke ? offer->ke : none);
+    const bool shines = offer->has_ke && (offer->ke[0] > 0 || offer->ke[1] > 0 || offer->ke[2] > 0);
+    *material = offer->has_surface && !shines
+                    ? surface(offer)
+                    : matte(offer->has_kd ? offer->kd : clay, offer->has_ke ? offer->ke : none);
     return BP_OK;
 }
 
-/* The materials that the faces of an OBJ file use, into `materials` and `mesh`, two objects. */
+/* The materials that the faces of an OBJ or glTF file use, into `materials` and `mesh`, two objects. */
 static BpStatus add_offers(const char *path, json_t *materials, json_t *entry, bool *all_have_one, char *note,
                            BpError *err) {
     BpMesh mesh;
@@ -120,6 +136,9 @@ static BpStatus add_offers(const char *path, json_t *materials, json_t *entry, b
     *all_have_one = with_one > 0 && with_one == mesh.face_count;
     if (status == BP_OK && with_one > 0 && json_object_set(entry, "materials", names) != 0)
         status = BP_ERR_SCENE;
+    /* In glTF, flat faces are those without normals. */
+    if (status == BP_OK && mesh.face_normals != NULL && !is_called(path, ".obj"))
+        json_object_set_new(entry, "smooth", json_true());
     json_decref(names);
     free(numbers);
     bp_mesh_clear(&mesh);
@@ -143,7 +162,7 @@ BpStatus bp_mesh_document(const char *path, char **text, char note[BP_DOCUMENT_N
     BpStatus status = BP_OK;
     note[0] = '\0';
     *text = NULL;
-    if (whole && is_called(path, ".obj")) {
+    if (whole && (is_called(path, ".obj") || is_called(path, ".gltf") || is_called(path, ".glb"))) {
         status = add_offers(path, materials, entry, &all_have_one, note, err);
         whole = status == BP_OK;
         if (status != BP_OK && err != NULL && err->message[0] != '\0') goto done;

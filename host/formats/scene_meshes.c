@@ -146,8 +146,8 @@ static BpStatus parse_mesh(const BpNode *node, const BpMaterialIndex *index, con
         return bp_node_wrong(node, "an object: { \"file\": \"bunny.ply\", \"material\": ... }", err);
     BP_TRY(refuse_later(node, err));
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
-    BP_TRY(
-        bp_node_require(node, "file", "the path of a PLY, OBJ, STL or OFF file, relative to the scene", err));
+    BP_TRY(bp_node_require(node, "file",
+                           "the path of a PLY, OBJ, STL, OFF or glTF file, relative to the scene", err));
     const BpNode file = bp_node_member(node, "file"), material = bp_node_member(node, "material"),
                  materials = bp_node_member(node, "materials");
     BpMeshUse use = {.material = UINT32_MAX};

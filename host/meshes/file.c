@@ -11,7 +11,15 @@
 #include <string.h>
 #include <strings.h>
 
-typedef enum Format { FORMAT_NONE, FORMAT_PLY, FORMAT_OBJ, FORMAT_STL, FORMAT_OFF, FORMAT_FOREIGN } Format;
+typedef enum Format {
+    FORMAT_NONE,
+    FORMAT_PLY,
+    FORMAT_OBJ,
+    FORMAT_STL,
+    FORMAT_OFF,
+    FORMAT_GLTF,
+    FORMAT_FOREIGN
+} Format;
 
 #define READERS(X)                                                                                           \
     X(FORMAT_NONE, NULL)                                                                                     \
@@ -19,6 +27,7 @@ typedef enum Format { FORMAT_NONE, FORMAT_PLY, FORMAT_OBJ, FORMAT_STL, FORMAT_OF
     X(FORMAT_OBJ, mesh_read_obj)                                                                             \
     X(FORMAT_STL, mesh_read_stl)                                                                             \
     X(FORMAT_OFF, mesh_read_off)                                                                             \
+    X(FORMAT_GLTF, mesh_read_gltf)                                                                           \
     X(FORMAT_FOREIGN, NULL)
 BP_WORDS(Format, static ReadMesh *const readers, READERS);
 
@@ -26,12 +35,19 @@ BP_WORDS(Format, static ReadMesh *const readers, READERS);
  * named. */
 static const struct {
     const char *name, *ending, *beginning;
-} foreign[] = {
-    {"glTF", ".gltf", NULL},      {"binary glTF", ".glb", "glTF"}, {"FBX", ".fbx", "Kaydara FBX Binary"},
-    {"3D Studio", ".3ds", NULL},  {"COLLADA", ".dae", NULL},       {"Blender", ".blend", "BLENDER"},
-    {"3MF", ".3mf", NULL},        {"USD", ".usd", NULL},           {"USD", ".usda", "#usda "},
-    {"USD", ".usdc", "PXR-USDC"}, {"USD", ".usdz", NULL},          {"STEP", ".step", "ISO-10303-21"},
-    {"STEP", ".stp", NULL},       {"VRML", ".wrl", "#VRML "},      {"X3D", ".x3d", NULL}};
+} foreign[] = {{"FBX", ".fbx", "Kaydara FBX Binary"},
+               {"3D Studio", ".3ds", NULL},
+               {"COLLADA", ".dae", NULL},
+               {"Blender", ".blend", "BLENDER"},
+               {"3MF", ".3mf", NULL},
+               {"USD", ".usd", NULL},
+               {"USD", ".usda", "#usda "},
+               {"USD", ".usdc", "PXR-USDC"},
+               {"USD", ".usdz", NULL},
+               {"STEP", ".step", "ISO-10303-21"},
+               {"STEP", ".stp", NULL},
+               {"VRML", ".wrl", "#VRML "},
+               {"X3D", ".x3d", NULL}};
 enum { FOREIGN_COUNT = sizeof foreign / sizeof *foreign };
 
 static bool has_ending(const char *path, const char *ending) {
@@ -83,6 +99,8 @@ static Format find_format(Input *input, const char *path, const char **other) {
         if (has_ending(path, foreign[i].ending)) return FORMAT_FOREIGN;
         if (foreign[i].beginning != NULL && begins_with(input, foreign[i].beginning)) return FORMAT_FOREIGN;
     }
+    if (has_ending(path, ".gltf") || has_ending(path, ".glb") || begins_with(input, "glTF"))
+        return FORMAT_GLTF;
     first_word(input, word, sizeof word);
     if (word[0] == '{') return FORMAT_NONE; /* a scene document, whatever its name */
     if (strcmp(word, "ply") == 0) return FORMAT_PLY;
@@ -116,10 +134,11 @@ static BpStatus read_input(Input *input, const char *path, BpMesh *mesh, BpError
     const Format format = find_format(input, path, &other);
     if (format == FORMAT_FOREIGN)
         return input_fail(input, false, err,
-                          "found a mesh as %s, which is not read; export it as PLY, OBJ, STL or OFF", other);
+                          "found a mesh as %s, which is not read; export it as PLY, OBJ, STL, OFF or glTF",
+                          other);
     if (format == FORMAT_NONE)
         return input_fail(input, false, err,
-                          "found no format that is known, expected a mesh as PLY, OBJ, STL or OFF");
+                          "found no format that is known, expected a mesh as PLY, OBJ, STL, OFF or glTF");
     mesh_builder_init(&builder, input, path, mesh);
     BpStatus status = readers[format](&builder, err);
     if (status == BP_OK) status = mesh_finish(&builder, err);

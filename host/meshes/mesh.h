@@ -4,9 +4,9 @@
  * that is not closed. Knows: which formats there are.   Does not know: scenes, how a mesh is placed and
  * traced.
  *
- * Formats: PLY with faces, OBJ with MTL, STL, OFF; each also packed by gzip. Nothing in a file is trusted:
- * memory grows with what was read and never with what a count promises, and every error names the file, and
- * the line where there are lines. Coordinates are as written, in the file's unit of length. */
+ * Formats: PLY with faces, OBJ with MTL, STL, OFF, glTF; each also packed by gzip. Nothing in a file is
+ * trusted: memory grows with what was read and never with what a count promises, and every error names the
+ * file, and the line where there are lines. Coordinates are as written, in the file's unit of length. */
 #ifndef BP_MESHES_MESH_H
 #define BP_MESHES_MESH_H
 
@@ -23,14 +23,16 @@
 /* In face_material: the face has none. */
 #define BP_MESH_NO_MATERIAL UINT32_MAX
 
-/* A material by name, and what an MTL file says of it: an offer to whoever has no material of that name. */
+/* A material by name, and what the file or its MTL file says of it: an offer to whoever has no material of
+ * that name. */
 typedef struct BpMeshMaterial {
     char *name;        /* owned by the mesh */
-    size_t face_count; /* triangles that have it; 0: the MTL file alone names it */
-    bool has_kd, has_ke, has_ni, has_d;
+    size_t face_count; /* triangles that have it; 0: no face uses it */
+    bool has_kd, has_ke, has_ni, has_d, has_surface;
     double kd[3],
         ke[3];    /* linear red, green and blue: diffuse reflectance, emitted radiance; finite, from 0 */
     double ni, d; /* index of refraction, above 0; opacity in [0, 1] */
+    double metallic, roughness; /* of glTF, in [0, 1] */
 } BpMeshMaterial;
 
 typedef struct BpMesh {
@@ -54,7 +56,7 @@ typedef struct BpMesh {
 } BpMesh;
 
 /* Whether name and contents tell of a mesh, also of one in a format that bp_mesh_read() only refuses by name
- * (glTF). A PLY file is a mesh if it has faces. False if the file cannot be read. */
+ * (FBX). A PLY file is a mesh if it has faces. False if the file cannot be read. */
 bool bp_mesh_is_file(const char *path);
 
 /* Reads a regular file into *mesh, which need not be initialised; release it with bp_mesh_clear(). MTL files

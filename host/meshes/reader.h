@@ -10,7 +10,7 @@
 #include "builder.h"
 
 typedef BpStatus ReadMesh(MeshBuilder *builder, BpError *err);
-ReadMesh mesh_read_ply, mesh_read_obj, mesh_read_stl, mesh_read_off;
+ReadMesh mesh_read_ply, mesh_read_obj, mesh_read_stl, mesh_read_off, mesh_read_gltf;
 
 /* Whether a PLY file, at its beginning, has faces; without them it is a file of points. */
 bool mesh_ply_has_faces(Input *input);

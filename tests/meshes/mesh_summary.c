@@ -86,6 +86,7 @@ static void print_materials(const BpMesh *mesh) {
         if (m->has_ke) printf(", \"ke\": [%.17g, %.17g, %.17g]", m->ke[0], m->ke[1], m->ke[2]);
         if (m->has_ni) printf(", \"ni\": %.17g", m->ni);
         if (m->has_d) printf(", \"d\": %.17g", m->d);
+        if (m->has_surface) printf(", \"metallic\": %.17g, \"roughness\": %.17g", m->metallic, m->roughness);
         printf("}");
     }
     printf("]");

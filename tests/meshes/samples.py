@@ -1,4 +1,6 @@
 """Files of meshes, made by hand: what tests of them and the fuzz targets begin with."""
+import base64
+import json
 import struct
 import zlib
 
@@ -72,6 +74,61 @@ def off(vertices=CORNERS, faces=SIDES, keyword="OFF", behind_vertex="", behind_f
         f"{len(face)} " + " ".join(map(str, face)) + f"{behind_face}\n" for face in faces)
 
 
+COMPONENTS = {"b": 5120, "B": 5121, "h": 5122, "H": 5123, "I": 5125, "f": 5126}
+
+
+class Gltf:
+    """A glTF file, put together by hand: accessors first, then what uses them."""
+
+    def __init__(self):
+        self.bytes, self.document = b"", {"asset": {"version": "2.0"}, "bufferViews": [], "accessors": [], "buffers": []}
+
+    def view(self, content, **members):
+        self.bytes += bytes(-len(self.bytes) % 4)
+        self.document["bufferViews"].append({"buffer": 0, "byteOffset": len(self.bytes), "byteLength": len(content), **members})
+        self.bytes += content
+        return len(self.document["bufferViews"]) - 1
+
+    def accessor(self, rows, kind="f", form="VEC3", normalized=False, gap=0, **members):
+        """Rows of numbers; `gap`: bytes between them."""
+        rows = [row if isinstance(row, (tuple, list)) else (row,) for row in rows]
+        packed = [struct.pack(f"<{len(row)}{kind}", *row) for row in rows]
+        view = self.view(bytes(gap).join(packed), **({"byteStride": len(packed[0]) + gap} if gap else {}))
+        self.document["accessors"].append({"bufferView": view, "componentType": COMPONENTS[kind], "count": len(rows), "type": form,
+                                           **({"normalized": True} if normalized else {}), **members})
+        return len(self.document["accessors"]) - 1
+
+    def add(self, **members):
+        """Members at the top of the document."""
+        self.document.update(members)
+        return self
+
+    def text(self, uri=None):
+        """In JSON; `uri`: of the numbers, which are in the document where it is not given."""
+        uri = uri or "data:application/octet-stream;base64," + base64.b64encode(self.bytes).decode()
+        return json.dumps({**self.document, "buffers": [{"byteLength": len(self.bytes), "uri": uri}]}).encode()
+
+    def binary(self):
+        text = json.dumps({**self.document, "buffers": [{"byteLength": len(self.bytes)}]}).encode()
+        text += b" " * (-len(text) % 4)
+        numbers = self.bytes + bytes(-len(self.bytes) % 4)
+        chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(numbers), b"BIN\0") + numbers
+        return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+def gltf(vertices=CORNERS, triangles=TRIANGLES, index="H", node=(), mode=None, primitive=(), attributes=(), **members):
+    """One mesh at one node, of which the members are given; attributes: (name, rows, arguments of accessor())."""
+    made = Gltf()
+    uses = {"POSITION": made.accessor(vertices)}
+    for name, rows, more in attributes:
+        uses[name] = made.accessor(rows, **more)
+    corners = [corner for triangle in triangles for corner in triangle]
+    of_mesh = {"attributes": uses, **({"indices": made.accessor(corners, index, "SCALAR")} if index else {}),
+               **({} if mode is None else {"mode": mode}), **dict(primitive)}
+    return made.add(**{"meshes": [{"primitives": [of_mesh]}], "nodes": [{"mesh": 0, **dict(node)}], "scenes": [{"nodes": [0]}], "scene": 0,
+                       **members})
+
+
 L_SHAPE = [(0, 0, 0), (4, 0, 0), (4, 1, 0), (1, 1, 0), (1, 4, 0), (0, 4, 0)]
 MTL = """# a library
 newmtl red
@@ -123,6 +180,16 @@ def seeds():
                        "holed": b"v 0 0 0\nv 8 0 0\nv 8 8 0\nv 0 8 0\nv 2 2 0\nv 2 6 0\nv 6 6 0\nv 6 2 0\nf 1 2 3 4 1 5 6 7 8 5\n"},
         "meshes_stl": {"text": stl_text(triangles=TRIANGLES[:3]).encode(), "binary": stl_binary(triangles=TRIANGLES[:4], attribute=3),
                        "solid": stl_binary(triangles=TRIANGLES[:2], header=b"solid binary"), "liar": stl_binary(triangles=TRIANGLES[:2], count=10 ** 9)},
+        "meshes_gltf": {"text": gltf().text(), "binary": gltf(index="B").binary(),
+                        "turned": gltf(node={"rotation": [0, 0.6, 0, 0.8], "scale": [1, -2, 3], "children": [1]},
+                                       attributes=[("NORMAL", CORNERS, {}), ("COLOR_0", [(9, 8, 7, 255)] * 8, {"kind": "B", "form": "VEC4", "normalized": True})],
+                                       nodes=[{"mesh": 0, "matrix": [2.0 * (i % 5 == 0) for i in range(16)], "children": [1]}, {"translation": [1, 2, 3], "mesh": 0}],
+                                       materials=[{"name": "a", "emissiveFactor": [1, 0, 0]}], primitive={"material": 0}).binary(),
+                        "skin": gltf(attributes=[("JOINTS_0", [(0, 1, 0, 0)] * 8, {"kind": "B", "form": "VEC4"}),
+                                                 ("WEIGHTS_0", [(0.5, 0.5, 0, 0)] * 8, {"form": "VEC4"})],
+                                     nodes=[{"mesh": 0, "skin": 0, "children": [1, 2]}, {"translation": [1, 0, 0]}, {"scale": [2, 2, 2]}],
+                                     skins=[{"joints": [1, 2]}]).binary(),
+                        "strip": gltf(triangles=[(0, 1, 2, 3)], mode=5, index="B").text(), "fan": gltf(index=None, mode=6).binary()},
         "meshes_off": {"plain": off().encode(), "colours": off(keyword="COFF", behind_vertex=" 255 0 9 255").encode(),
                        "faces": off(behind_face=" 0.5 0.25 1").encode(), "all": off(keyword="STCNOFF", behind_vertex=" 0 0 1 1 0 0 1 0.5 0.5").encode(),
                        "counts": off(counts=" 8 6 # many\n").encode(), "huge": off(counts=" 1000000000 1000000000 0\n").encode()},

@@ -16,7 +16,7 @@ import unittest
 
 import samples
 from in_folder import FolderTest
-from samples import CORNERS, L_SHAPE, SIDES, TRIANGLES, obj, off, ply, stl_binary, stl_text
+from samples import CORNERS, Gltf, L_SHAPE, SIDES, TRIANGLES, gltf, obj, off, ply, stl_binary, stl_text
 
 READERS_PYTHON = os.environ.get("BALLPARK_READERS_PYTHON", sys.executable)
 MODELS = "/usr/share/assimp/models"
@@ -529,14 +529,222 @@ class Shapes(MeshTest):
         self.assertEqual(edge([(3 * i, 3 * i + 1, 3 * i + 2) for i in range(11)], apart)[0], OPEN)
 
 
+def turned(axis, degrees, point):
+    """A point turned about an axis of the coordinates."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    a, b = (axis + 1) % 3, (axis + 2) % 3
+    made = list(point)
+    made[a], made[b] = c * point[a] - s * point[b], s * point[a] + c * point[b]
+    return made
+
+
+def quaternion(axis, degrees, length=1):
+    return [length * math.sin(math.radians(degrees / 2)) * (k == axis) for k in range(3)] + [length * math.cos(math.radians(degrees / 2))]
+
+
+class GltfFiles(MeshTest):
+    def test_containers(self):
+        """The same cube in JSON, in binary, with its numbers in a file of their own, and packed; by its beginning where the name is another."""
+        cube = gltf()
+        self.write("some numbers.bin", cube.bytes)
+        for name, content in (("a.gltf", cube.text()), ("a.glb", cube.binary()), ("b.gltf", cube.text("some%20numbers.bin")),
+                              ("a.gltf.gz", gzip.compress(cube.text())), ("a.glb.gz", gzip.compress(cube.binary())), ("a.dat", cube.binary()),
+                              ("c.gltf", b"\xef\xbb\xbf" + cube.text())):
+            self.is_cube(self.of(name, content))
+        for index in "BHI":
+            self.is_cube(self.of("a.glb", gltf(index=index).binary()))
+        self.is_cube(self.of("a.glb", gltf().binary() + b"left over"))
+
+    def test_modes(self):
+        square = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (0, 2, 0)]
+        for mode, faces in ((5, [[0, 1, 2], [1, 3, 2], [2, 3, 4]]), (6, [[0, 1, 2], [0, 2, 3], [0, 3, 4]])):
+            found = self.of("a.glb", gltf(square, index=None, mode=mode).binary())
+            self.assertEqual(found["faces"], faces)
+        found = self.of("a.glb", gltf(square, [(0, 1, 2, 2, 4, 3, 1)], mode=5).binary())
+        self.assertEqual(found["faces"], [[0, 1, 2], [2, 3, 4], [4, 3, 1]])  # every second one runs the other way
+        found = self.of("a.glb", gltf(square[:3], index=None).binary())
+        self.assertEqual(found["faces"], [[0, 1, 2]])
+        two = gltf()
+        two.document["meshes"][0]["primitives"].append({**two.document["meshes"][0]["primitives"][0], "mode": 1})
+        self.assertIn("1 primitive of points or lines left out", self.of("a.glb", two.binary())["notes"])
+
+    def test_numbers(self):
+        """Rows with gaps, shares in bytes and words, and rows that replace others."""
+        self.is_cube(self.of("a.glb", gltf().binary()))
+        gaps = Gltf()
+        position = gaps.accessor(CORNERS, gap=12)
+        gaps.add(meshes=[{"primitives": [{"attributes": {"POSITION": position}, "indices": gaps.accessor([c for t in TRIANGLES for c in t], "I", "SCALAR")}]}],
+                 nodes=[{"mesh": 0}])
+        self.is_cube(self.of("a.glb", gaps.binary()))
+        for kind, most in (("b", 127), ("B", 255), ("h", 32767), ("H", 65535)):
+            made = Gltf()
+            rows = [[most * c for c in corner] for corner in CORNERS]
+            made.add(meshes=[{"primitives": [{"attributes": {"POSITION": made.accessor(rows, kind, normalized=True, gap=len(kind))},
+                                              "indices": made.accessor([c for t in TRIANGLES for c in t], "B", "SCALAR")}]}], nodes=[{"mesh": 0}],
+                     extensionsRequired=["KHR_mesh_quantization"])
+            self.is_cube(self.of("a.glb", made.binary()))
+        made = Gltf()
+        made.accessor([(c[0], c[1], 5) for c in CORNERS])
+        made.document["accessors"][0]["sparse"] = {
+            "count": 8, "indices": {"bufferView": made.view(struct.pack("<8H", *range(8))), "componentType": 5123},
+            "values": {"bufferView": made.view(b"".join(struct.pack("<3f", *c) for c in CORNERS))}}
+        made.add(meshes=[{"primitives": [{"attributes": {"POSITION": 0}, "indices": made.accessor([c for t in TRIANGLES for c in t], "B", "SCALAR")}]}],
+                 nodes=[{"mesh": 0}])
+        self.is_cube(self.of("a.glb", made.binary()))
+        made.document["accessors"][0].pop("bufferView")  # zeros, of which all are replaced
+        self.is_cube(self.of("a.glb", made.binary()))
+
+    def test_nodes(self):
+        """A child is scaled, turned and moved, then what its parent does; a matrix stands column by column. By turns about axes."""
+        parent = {"rotation": quaternion(2, 90), "translation": [10, 0, 0], "children": [1]}
+        child = {"mesh": 0, "scale": [1, 2, 3], "rotation": quaternion(0, 30, 1), "translation": [0, 5, 0]}
+        found = self.of("a.glb", gltf(nodes=[parent, child]).binary())
+        expected = []
+        for corner in CORNERS:
+            point = turned(0, 30, [c * f for c, f in zip(corner, (1, 2, 3))])
+            point = turned(2, 90, [point[0], point[1] + 5, point[2]])
+            expected.append([point[0] + 10, point[1], point[2]])
+        self.near(found["positions"], expected, 1e-12)
+        self.assertAlmostEqual(volume_of(found["positions"], found["faces"]), 6, 10)
+        axes = [turned(1, 70, [float(k == axis) for k in range(3)]) for axis in range(3)]
+        matrix = [*axes[0], 0, *axes[1], 0, *axes[2], 0, 7, 8, 9, 1]
+        found = self.of("a.glb", gltf(node={"matrix": matrix}).binary())
+        self.near(found["positions"], [[p + q for p, q in zip(turned(1, 70, corner), (7, 8, 9))] for corner in CORNERS], 1e-12)
+        for scale in ([-1, 1, 1], [-1, -1, -1], [-1, -1, 1]):  # mirrored, it is wound outwards still
+            found = self.of("a.glb", gltf(node={"scale": scale}).binary())
+            self.assertAlmostEqual(volume_of(found["positions"], found["faces"]), 1, 12)
+        twice = gltf(nodes=[{"children": [2, 1]}, {"mesh": 0}, {"mesh": 0, "translation": [5, 0, 0]}])
+        self.assertEqual(self.of("a.glb", twice.binary())["triangles"], 24)
+        two = gltf(nodes=[{"mesh": 0}, {"mesh": 0, "translation": [5, 0, 0]}], scenes=[{"nodes": [0]}, {"nodes": [1]}], scene=1)
+        found = self.of("a.glb", two.binary())
+        self.assertEqual((min(p[0] for p in found["positions"]), found["triangles"]), (5, 12))
+        self.assertIn("scene 1 (from 0) of 2", found["notes"])
+
+    def test_normals(self):
+        """At right angles to the surface also where an axis is stretched or mirrored, and to its outside."""
+        slope = [(0, 0, 0), (1, 0, -1), (0, 1, 0)]
+        for scale in ([1, 1, 1], [3, 1, 1], [-3, 1, 1], [1, 1, -2]):
+            found = self.of("a.glb", gltf(slope, [(0, 1, 2)], node={"scale": scale}, attributes=[("NORMAL", [(1, 0, 1)] * 3, {})]).binary())
+            a, b, c = (found["positions"][v] for v in found["faces"][0])
+            s, t = [q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)]
+            cross = [s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]]
+            length = math.hypot(*cross)
+            self.near(found["corner_normals"], [[x / length for x in cross]] * 3, 1e-6)
+
+    def test_skin(self):
+        """A vertex goes where its joints take it, by weight; what its own node does is left out."""
+        weights = [(1, 0, 0, 0), (0, 2, 0, 0), (0.5, 0.5, 0, 0), (0.25, 0.75, 0, 0)] * 2
+        made = gltf(attributes=[("JOINTS_0", [(0, 1, 0, 0)] * 8, {"kind": "B", "form": "VEC4"}), ("WEIGHTS_0", weights, {"form": "VEC4"})])
+        inverse = [[float(i % 5 == 0) for i in range(12)] + [0, -1, 0, 1], [float(i % 5 == 0) for i in range(16)]]
+        made.add(nodes=[{"mesh": 0, "skin": 0, "translation": [100, 0, 0]}, {"translation": [1, 0, 0], "children": [2]}, {"scale": [2, 2, 2]}],
+                 scenes=[{"nodes": [0, 1]}], skins=[{"joints": [1, 2], "inverseBindMatrices": made.accessor(inverse, form="MAT4")}])
+        found = self.of("a.glb", made.binary())
+        expected = []
+        for (x, y, z), row in zip(CORNERS, weights):
+            first, second = (x + 1, y - 1, z), (2 * x + 1, 2 * y, 2 * z)
+            expected.append([(row[0] * p + row[1] * q) / (row[0] + row[1]) for p, q in zip(first, second)])
+        self.near(found["positions"], expected, 1e-6)
+
+    def test_colors(self):
+        """Linear, in whatever type, times the material's; vertices of others have their material's alone."""
+        shades = [(0, 51, 255)] * 8
+        for kind, most in (("B", 255), ("H", 65535), ("f", 1)):
+            rows = [[c / 255 * most if kind == "f" else c * most // 255 for c in row] for row in shades]
+            made = gltf(attributes=[("COLOR_0", rows, {"kind": kind, "normalized": kind != "f"})], materials=[
+                {"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.25, 1]}}], primitive={"material": 0})
+            found = self.of("a.glb", made.binary())
+            self.near(found["vertex_colors"], [[0, 0.1, 0.25]] * 8, 1e-6)
+        plain = {key: value for key, value in made.document["meshes"][0]["primitives"][0].items()}
+        made.document["meshes"][0]["primitives"].append({**plain, "attributes": {"POSITION": 0}})
+        found = self.of("a.glb", made.binary())
+        self.near(found["vertex_colors"], [[0, 0.1, 0.25]] * 8 + [[0.5, 0.5, 0.25]] * 8, 1e-6)
+
+    def test_materials(self):
+        def of(*materials):
+            made = gltf(materials=list(materials), primitive={"material": 0})
+            first = made.document["meshes"][0]["primitives"][0]
+            made.document["meshes"][0]["primitives"] = [{**first, "material": i} for i in range(len(materials))]
+            return self.of("a.glb", made.binary())
+        default = {"faces": 12, "kd": [1, 1, 1], "ke": [0, 0, 0], "ni": 1.5, "metallic": 1, "roughness": 1}
+        self.assertEqual(of({})["materials"], [{"name": "material 0", **default}])
+        # Names that are missing or the same are others' all the same.
+        found = of({"name": "a"}, {"name": "a"}, {}, {"name": "a 1"}, {"name": "material 2"})
+        self.assertEqual([m["name"] for m in found["materials"]], ["a", "a 1", "material 2", "a 1 3", "material 2 4"])
+        self.assertEqual(found["face_material"], [i for i in range(5) for _ in range(12)])
+        self.assertEqual(found["vertices"], 8)  # primitives share their vertices
+        glass = {"name": "glass", "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.25}, "extensions": {
+            "KHR_materials_transmission": {"transmissionFactor": 0.75}, "KHR_materials_ior": {"ior": 1.25}}}
+        self.assertEqual(of(glass)["materials"], [{**default, "name": "glass", "ni": 1.25, "d": 0.25, "metallic": 0, "roughness": 0.25}])
+        lamp = {"name": "lamp", "emissiveFactor": [1, 0.5, 0], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 8}}}
+        self.assertEqual(of(lamp)["materials"][0]["ke"], [8, 4, 0])
+        # Where it shines, a texture says, which is left out.
+        self.assertEqual(of({**lamp, "emissiveTexture": {"index": 0}})["materials"][0]["ke"], [0, 0, 0])
+        self.assertEqual(of({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.25]}, "alphaMode": "BLEND"})["materials"][0]["d"], 0.25)
+        self.assertNotIn("kd", of({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}})["materials"][0])
+        self.assertNotIn("d", of({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.25]}})["materials"][0])
+        self.assertNotIn("metallic", of({"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}})["materials"][0])
+
+    def test_left_out(self):
+        more = gltf(textures=[{}], animations=[{}, {}], cameras=[{}], extensions={"KHR_lights_punctual": {"lights": [{}, {}, {}]}})
+        more.document["meshes"][0]["weights"] = [0.5]
+        self.assertEqual(self.of("a.glb", more.binary())["notes"],
+                         "textures left out; 1 morph left out; 2 animations left out; 1 camera left out; 3 lights left out")
+        more.document["meshes"][0]["weights"] = [0]
+        self.assertNotIn("morph", self.of("a.glb", more.binary())["notes"])
+
+    def test_refused(self):
+        cube = gltf()
+        binary, text = cube.binary(), cube.text()
+
+        def changed(**members):
+            return gltf(**members).binary()
+
+        def with_accessor(number, **members):
+            made = gltf()
+            made.document["accessors"][number].update(members)
+            return made.binary()
+
+        def with_view(number, **members):
+            made = gltf()
+            made.document["bufferViews"][number].update(members)
+            return made.binary()
+        for content, *says in (
+                (b"", "not JSON"), (b"{", "not JSON"), (b"[]", "asset.version"), (b"{}", "found none for asset.version"),
+                (text.replace(b'"2.0"', b'"1.0"'), "found 1.0 for asset.version"), (binary[:8], "end of the file within the header"),
+                (binary[:4] + b"\1" + binary[5:], "glTF of version 1"), (binary[:-4], "the file is cut off"),
+                (binary[:12] + struct.pack("<I", 10 ** 9) + binary[16:], "a chunk of 1000000000 bytes"), (binary[:16] + b"WHAT" + binary[20:], "no chunk of JSON"),
+                (text.replace(b"base64,", b"base64,*"), "buffers[0]: ", "base64"), (text.replace(b";base64,", b","), "not in base64"),
+                (cube.text("https://example.org/a.bin"), "address of the network"), (cube.text("none.bin"), "check the path"),
+                (text.replace(b'"byteLength": %d, "uri"' % len(cube.bytes), b'"byteLength": 9999, "uri"'), 'the 9999 that "byteLength" counts'),
+                (changed(extensionsRequired=["KHR_draco_mesh_compression"]), "KHR_draco_mesh_compression", "export it without compression"),
+                (changed(extensionsRequired=["XX_other"]), "XX_other", "export it without this extension"),
+                (changed(node={"extensions": {"EXT_mesh_gpu_instancing": {}}}), "EXT_mesh_gpu_instancing"),
+                (changed(nodes=[{"children": [0], "mesh": 0}]), "below two nodes"), (changed(nodes=[{"children": [5]}]), "none of 1 nodes"),
+                (changed(scenes=[{"nodes": [0, 0]}]), "below two nodes"), (changed(scene=3), "found no object scenes[3]"),
+                (changed(node={"mesh": 7}), "found no object meshes[7]"), (changed(node={"scale": [1, 2]}), 'nodes[0]: found a "scale" that is not 3 numbers'),
+                (changed(node={"matrix": [1]}), "not 16 numbers"), (changed(node={"mesh": -1}), "no whole number"), (changed(node={"mesh": 0.5}), "no whole number"),
+                (changed(primitive={"material": 1}), "found material 1, expected one of 0"), (changed(primitive={"mode": 9}), "found mode 9"),
+                (changed(primitive={"attributes": {}}), "meshes[0].primitives[0]: found no POSITION"), (changed(primitive={"indices": 9}), "found no object accessors[9]"),
+                (changed(triangles=[(0, 1)]), "a multiple of three"), (changed(triangles=[(0, 1, 8)]), "found vertex 8 in triangle 0", "one of 8"),
+                (changed(attributes=[("NORMAL", [(0, 0, 1)] * 7, {})]), "found 7 rows of an attribute", "8 vertices"),
+                (changed(node={"skin": 0}, skins=[{"joints": [4]}]), "skins[0]: found joint 0"),
+                (with_accessor(0, count=10 ** 9), "accessors[0]: found 1000000000 rows"), (with_accessor(0, type="VEC2"), "rows of another type"),
+                (with_accessor(0, componentType=5124), "componentType 5124"), (with_accessor(0, byteOffset=97), "bufferViews[0]: ", "byte 97"),
+                (with_accessor(1, count=37), "accessors[1]: "), (with_accessor(0, bufferView=9), "found no object bufferViews[9]"),
+                (with_accessor(0, sparse={"count": 10 ** 9, "indices": {"bufferView": 0, "componentType": 5123}, "values": {"bufferView": 0}}), "sparse"),
+                (with_view(0, byteLength=10 ** 9), "bufferViews[0]: "), (with_view(0, byteOffset=10 ** 9), "bufferViews[0]: "),
+                (with_view(0, buffer=3), "found buffer 3, expected one of 1"), (with_view(0, byteStride=4), "rows of 12 bytes 4 apart"),
+                (gltf(nodes=[{}]).binary(), "no triangles in its scene")):
+            self.refuse("a.gltf", content, *says, mesh=True)
+
+
 class Names(MeshTest):
     def test_foreign(self):
         """Other formats are refused by name, whatever else is in them, and a scene document is no mesh."""
-        for ending, name in ((".gltf", "glTF"), (".glb", "glTF"), (".fbx", "FBX"), (".3ds", "3D Studio"), (".dae", "COLLADA"),
+        for ending, name in ((".fbx", "FBX"), (".3ds", "3D Studio"), (".dae", "COLLADA"),
                              (".blend", "Blender"), (".3mf", "3MF"), (".usd", "USD"), (".usda", "USD"), (".usdc", "USD"), (".usdz", "USD"),
                              (".step", "STEP"), (".stp", "STEP"), (".wrl", "VRML"), (".x3d", "X3D")):
-            self.refuse("a" + ending, "{}", name, "export it as PLY, OBJ, STL or OFF", mesh=True)
-        self.refuse("a", b"glTF\2\0\0\0", "binary glTF", mesh=True)
+            self.refuse("a" + ending, "{}", name, "export it as PLY, OBJ, STL, OFF or glTF", mesh=True)
         self.refuse("a", b"Kaydara FBX Binary  \0", "FBX", mesh=True)
         for beginning, name in ((b"BLENDER-v293", "Blender"), (b"#usda 1.0\n", "USD"), (b"ISO-10303-21;\n", "STEP"), (b"#VRML V2.0 utf8\n", "VRML")):
             self.refuse("a", beginning, name, mesh=True)
@@ -595,7 +803,7 @@ class Hostile(MeshTest):
         """A file that ends anywhere is read or refused, and never with more than the whole has."""
         for name, content in (("a.ply", ply("little", extra=True)), ("b.ply", ply("ascii")), ("a.obj", obj().encode()),
                               ("a.stl", stl_text(triangles=TRIANGLES[:3]).encode()), ("b.stl", stl_binary(triangles=TRIANGLES[:3])),
-                              ("a.off", off().encode())):
+                              ("a.off", off().encode()), ("a.glb", gltf().binary()), ("a.gltf", gltf(index="B").text())):
             stem, ending = name.split(".")
             lengths = range(len(content))
             paths = [self.write(f"{stem}{length}.{ending}", content[:length]) for length in lengths]
@@ -615,31 +823,48 @@ REFUSED = {"box_UTF16BE.obj": "UTF-16", "number_formats.obj": "3.1+e2", "point_c
            "testline.obj": "no faces", "testpoints.obj": "no faces", "invalid.off": "face 1", "Wuson.ply": "\"Created\"",
            "issue623.ply": "no faces", "points.ply": "no faces", "pond.0.ply": "no faces", "OutOfMemory.off": "vertex 8",
            "empty.obj": "no faces", "empty.off": "end of the file", "empty.ply": "end of the file", "malformed.obj": "vertex 0"}
+NO_SURFACES = "no triangles in its scene"
+REFUSED_GLTF = {  # by their paths, since names of files come again
+    "models/glTF/": "expected", "draco/2CylinderEngine.gltf": "KHR_draco_mesh_compression", "SceneWithoutNodes.gltf": NO_SURFACES,
+    "NoScene.gltf": "scenes[0]", "sceneWrongType.gltf": "check the path", "IncorrectVertexArrays/Cube.gltf": "35 corners",
+    "IndexOutOfRange.gltf": "vertex 255", "AllIndicesOutOfRange.gltf": "vertex 65535", "badArray.gltf": NO_SURFACES,
+    "BoxWithInfinites.glb": "no triangle with an area", "RecursiveNodes.gltf": "below two nodes", "MissingBin/": "check the path",
+    **{f"PrimitiveMode_{number:02}.gltf": NO_SURFACES for number in (0, 1, 2, 3, 7, 8, 9, 10)}}
+TRIMESH_CANNOT = {"regr01.obj", "badObject.gltf", "Mesh_PrimitiveMode_05.gltf", "Mesh_PrimitiveMode_12.gltf"}
+ROUNDED = {"2CylinderEngine.glb"}  # large, with thousands of triangles without area, of which rounding decides
+SKINNED = {"simple_skin.gltf"}  # trimesh leaves skins out
 FANNED = {"concave_polygon.obj", "space_in_material_name.obj"}  # polygons that trimesh cuts by a fan, over the edge
 
 
+def reason_of(path):
+    """What the refusal of a model says; None: it is read."""
+    if not path.lower().endswith((".gltf", ".glb")):
+        return REFUSED.get(os.path.basename(path))
+    return next((reason for part, reason in REFUSED_GLTF.items() if part in path), None)
+
+
 class Models(MeshTest):
-    """Every PLY, OBJ, STL and OFF file of Debian's assimp-testmodels is read, or refused for a reason."""
+    """Every PLY, OBJ, STL, OFF and glTF file of Debian's assimp-testmodels is read, or refused for a reason."""
 
     def models(self):
         if not os.path.isdir(MODELS):
             self.skipTest("assimp-testmodels is not installed")
         paths = sorted(os.path.join(folder, name) for folder, _, names in os.walk(MODELS) for name in names
-                       if name.lower().endswith((".ply", ".obj", ".stl", ".off")))
+                       if name.lower().endswith((".ply", ".obj", ".stl", ".off", ".gltf", ".glb")))
         self.assertGreater(len(paths), 40)
         return paths
 
     def test_reasons(self):
         for path in self.models():
-            name, found = os.path.basename(path), self.ask(path)
-            if name in REFUSED:
-                self.assertIn(REFUSED[name], found.get("error", ""), name)
+            found, reason = self.ask(path), reason_of(path)
+            if reason is not None:
+                self.assertIn(reason, found.get("error", ""), path)
             else:
-                self.assertNotIn("error", found, name)
+                self.assertNotIn("error", found, path)
 
     def test_known(self):
         """What can be known of some of them without another reader: cubes, and Newell's area of a flat polygon."""
-        found = {os.path.basename(path): self.ask(path) for path in self.models() if os.path.basename(path) not in REFUSED}
+        found = {os.path.basename(path): self.ask(path) for path in self.models() if reason_of(path) is None}
         for name in ("box.obj", "cube_usemtl.obj", "testmixed.obj", "box_mat_with_spaces.obj", "Cube.off", "cube.ply", "cube_binary.ply"):
             self.assertEqual((found[name]["triangles"], found[name]["area"], found[name]["edge"]["fault"]), (12, 6, 0), name)
         for name in FANNED:
@@ -663,17 +888,20 @@ class Independent(Models):
         return json.loads(result.stdout)
 
     def test_models(self):
-        paths = [path for path in self.models() if os.path.basename(path) not in REFUSED]
+        paths = [path for path in self.models() if reason_of(path) is None and os.path.basename(path) not in SKINNED]
         read = self.theirs("read", *paths)
         for path in paths:
             name, found, their = os.path.basename(path), self.ask("--whole", path), read[path]
             # trimesh leaves out one triangle of a face that has a vertex twice.
             if their is None:  # without the package charset_normalizer, it reads no text of unknown encoding
-                self.assertEqual(name, "regr01.obj")
+                self.assertIn(name, TRIMESH_CANNOT)
                 continue
             self.assertEqual(found["triangles"] + found["dropped"] - (name == "malformed2.obj"), their["triangles"], name)
             places = sorted({tuple(round(c, 5) + 0.0 for c in found["positions"][v]) for face in found["faces"] for v in face})
-            self.near(places, their["places"], 2e-5 * max(1, max(abs(c) for place in places for c in place)))
+            if name in ROUNDED:
+                self.assertLess(abs(len(places) - len(their["places"])), 9)
+            else:
+                self.near(places, their["places"], 2e-5 * max(1, max(abs(c) for place in places for c in place)))
             if name not in FANNED:
                 self.assertLess(abs(found["area"] / their["area"] - 1), 1e-6, name)
 

@@ -177,6 +177,47 @@ static void stl_welds(void **unused) {
     bp_mesh_clear(&mesh);
 }
 
+/* A strip, mirrored, stretched, turned by 0.28 and 0.96 and moved, of rows with other numbers between them.
+ */
+static void gltf(void **unused) {
+    (void)unused;
+    char text[] = "{'asset': {'version': '2.0'}, 'bufferViews': [{'buffer': 0, 'byteOffset': 0, "
+                  "'byteLength': 96, 'byteStride': 24}, {'buffer': 0, 'byteOffset': 96, "
+                  "'byteLength': 4}, {'buffer': 0, 'byteOffset': 100, 'byteLength': 16}], "
+                  "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 4, 'type': 'VEC3'}, "
+                  "{'bufferView': 0, 'byteOffset': 12, 'componentType': 5126, 'count': 4, "
+                  "'type': 'VEC3'}, {'bufferView': 1, 'componentType': 5121, 'count': 4, "
+                  "'type': 'SCALAR'}, {'bufferView': 2, 'componentType': 5121, 'count': 4, "
+                  "'type': 'VEC4', 'normalized': true}], 'buffers': [{'byteLength': 116, "
+                  "'uri': 'data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAIA/AAAAQAA"
+                  "AAAAAAADAAACAPwAAAAAAAIA/AAAAAAAAgD8AAAAAAACAPwAAAAAAAIA/AAAAQAAAgD8AAADAAACAPwAAAAA"
+                  "AAIA/AAECAwAz//8AM///ADP//wAz//8='}], 'meshes': [{'primitives': [{'attributes': {'PO"
+                  "SITION': 0, 'NORMAL': 1, 'COLOR_0': 3}, 'indices': 2, 'mode': 5, 'material': 0}]}], "
+                  "'materials': [{'name': 'a', 'pbrMetallicRoughness': {'baseColorFactor': [0.5, 0.5, "
+                  "0.5, 1]}}], 'nodes': [{'children': [1], 'rotation': [0, 0, 0.6, 0.8], "
+                  "'translation': [10, 0, 0]}, {'mesh': 0, 'scale': [-1, 1, 2], 'translation': [0, 5, "
+                  "0]}], 'scenes': [{'nodes': [0]}]}";
+    for (char *at = text; *at != '\0'; at++)
+        if (*at == '\'') *at = '"';
+    BpMesh mesh = read_text("a.gltf", text);
+    assert_int_equal(mesh.vertex_count, 4);
+    assert_int_equal(mesh.face_count, 2);
+    check_face(&mesh, 0, 0, 2, 1);
+    check_face(&mesh, 1, 1, 2, 3);
+    static const double places[4][3] = {{5.2, 1.4, 0}, {4.64, -0.52, -4}, {4.24, 1.68, 0}, {3.68, -0.24, -4}};
+    static const double normal[3] = {-0.25043961, -0.85865009, 0.44721360};
+    for (int v = 0; v < 4; v++) {
+        for (int a = 0; a < 3; a++) assert_true(fabs(mesh.positions[v][a] - places[v][a]) < 1e-12);
+        check_color(mesh.vertex_colors[v], 0, 0.1, 0.5);
+    }
+    for (int k = 0; k < 3; k++)
+        for (int a = 0; a < 3; a++) assert_true(fabs((double)mesh.face_normals[1][k][a] - normal[a]) < 1e-6);
+    assert_int_equal(mesh.material_count, 1);
+    assert_string_equal(mesh.materials[0].name, "a");
+    assert_true(mesh.materials[0].metallic == 1 && mesh.materials[0].roughness == 1);
+    bp_mesh_clear(&mesh);
+}
+
 static void off_colors(void **unused) {
     (void)unused;
     BpMesh mesh = read_text(
@@ -279,6 +320,7 @@ int main(void) {
                                        cmocka_unit_test(obj_materials),
                                        cmocka_unit_test(ply_lists),
                                        cmocka_unit_test(stl_welds),
+                                       cmocka_unit_test(gltf),
                                        cmocka_unit_test(off_colors),
                                        cmocka_unit_test(edges),
                                        cmocka_unit_test(no_area),

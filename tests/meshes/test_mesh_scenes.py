@@ -10,6 +10,7 @@ import math
 import os
 import unittest
 
+import samples
 from cli import ProgramTest, main
 from pfm import read_pfm
 
@@ -377,7 +378,7 @@ class Meshes(ProgramTest):
         self.assertEqual(document["meshes"], [{"file": "cube.obj", "materials": {"one": "one", "two": "two"}}])
         self.assertEqual(document["materials"], {"one": {"type": "lambertian", "albedo": [1, 0.5, 0.25], "emit": [2, 0, 0]},
                                                  "two": {"type": "lambertian", "albedo": [0, 0, 1]}})
-        self.assertIn('the material "two" is matte, although its d is 0.1: its faces are not closed', result.errors)
+        self.assertIn('the material "two" lets no light in, although its opacity is 0.1: its faces are not closed', result.errors)
         self.write("a.mtl", "newmtl all\nd 0.1\nNi 1.4\n")
         self.write("cube.obj", "mtllib a.mtl\nusemtl all\n" + "\n".join(row for row in self.obj().split("\n") if not row.startswith("usemtl")))
         self.assertEqual(json.loads(self.succeed("scene", "cube.obj").stdout)["materials"], {"all": {"type": "dielectric", "refraction_index": 1.4}})
@@ -386,10 +387,45 @@ class Meshes(ProgramTest):
         self.assertEqual(json.loads(self.succeed("scene", "half.obj").stdout)["meshes"],
                          [{"file": "half.obj", "materials": {"two": "two"}, "material": "surface"}])
 
+    def test_gltf(self):
+        """What glTF says of surfaces: metal, coats, glass that is closed, lamps; smooth where there are normals; the same picture as by hand."""
+        parts = {"gold": {"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1], "roughnessFactor": 0.25}},
+                 "paint": {"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1], "metallicFactor": 0, "roughnessFactor": 0.5}},
+                 "glass": {"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0}, "extensions": {
+                     "KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_ior": {"ior": 1.25}}},
+                 "lamp": {"emissiveFactor": [1, 0.5, 0], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}}},
+                 "photo": {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0}}}
+        wanted = {"gold": {"type": "metal", "albedo": [1, 0.5, 0.25], "roughness": 0.25},
+                  "paint": {"type": "glossy", "albedo": [0.5, 0.25, 1], "roughness": 0.5, "refraction_index": 1.5},
+                  "glass": {"type": "dielectric", "refraction_index": 1.25},
+                  "lamp": {"type": "lambertian", "albedo": [1, 1, 1], "emit": [4, 2, 0]},
+                  "photo": {"type": "glossy", "albedo": [0.6, 0.58, 0.55], "roughness": 1, "refraction_index": 1.5}}
+        cube = samples.gltf(materials=[{"name": name, **part} for name, part in parts.items()])
+        first = cube.document["meshes"][0]["primitives"][0]
+        cube.document["meshes"] = [{"primitives": [{**first, "material": i}]} for i in range(5)]
+        cube.document["nodes"] = [{"mesh": i, "translation": [2 * i, 0, 0]} for i in range(5)]
+        cube.document["scenes"] = [{"nodes": [0, 1, 2, 3, 4]}]
+        self.write("parts.glb", cube.binary())
+        document = json.loads(self.succeed("scene", "parts.glb").stdout)
+        self.assertEqual(document["materials"], wanted)
+        self.assertNotIn("smooth", document["meshes"][0])
+        picture = self.numbers("parts.glb", "--width", 32, "--spp", 4)
+        triangles = []
+        for i, name in enumerate(parts):
+            triangles += [{"vertices": [[samples.CORNERS[v][0] + 2 * i, *samples.CORNERS[v][1:]] for v in t], "material": name} for t in samples.TRIANGLES]
+        document.pop("meshes")
+        self.write("hand.json", json.dumps({**document, "triangles": triangles}))
+        self.assertEqual(self.numbers("hand.json", "--width", 32, "--spp", 4), picture)
+        self.write("smooth.glb", samples.gltf(attributes=[("NORMAL", samples.CORNERS, {})]).binary())
+        self.assertEqual(json.loads(self.succeed("scene", "smooth.glb").stdout)["meshes"], [{"file": "smooth.glb", "smooth": True, "material": "surface"}])
+        open_glass = samples.gltf(triangles=samples.TRIANGLES[1:], primitive={"material": 0}, materials=[{"name": "glass", **parts["glass"]}])
+        self.write("open.glb", open_glass.binary())
+        self.assertIn("its faces are not closed", self.succeed("scene", "open.glb").errors)
+
     def test_other_formats(self):
-        for name, content in (("a.blend", b"BLENDER-v300" + bytes(90)), ("a.glb", b"glTF" + bytes(90)), ("a.fbx", b"Kaydara FBX Binary" + bytes(90))):
+        for name, content in (("a.blend", b"BLENDER-v300" + bytes(90)), ("a.3mf", b"PK"), ("a.fbx", b"Kaydara FBX Binary" + bytes(90))):
             self.write(name, content)
-            self.fail_with(2, "render", name, says=[name, "export it as PLY, OBJ, STL or OFF"])
+            self.fail_with(2, "render", name, says=[name, "export it as PLY, OBJ, STL, OFF or glTF"])
 
 
 if __name__ == "__main__":
