@@ -31,6 +31,10 @@ static void put_vector(FILE *out, const double value[3]) {
     fputc(']', out);
 }
 
+static void put_floats(FILE *out, const float value[3]) {
+    put_vector(out, (const double[3]){(double)value[0], (double)value[1], (double)value[2]});
+}
+
 static BpStatus put_text(FILE *out, const char *text, BpError *err) {
     bool no_memory = false;
     char *quoted = bp_json_quote(text, &no_memory);
@@ -425,7 +429,7 @@ static BpStatus put_triangles(FILE *out, const BpScene *scene, BpError *err) {
         if (normals != NULL) fputs("], \"normals\": [", out);
         for (int k = 0; k < 3 && normals != NULL; k++) {
             if (k > 0) fputs(", ", out);
-            put_vector(out, (double[3]){(double)normals[k][0], (double)normals[k][1], (double)normals[k][2]});
+            put_floats(out, normals[k]);
         }
         fputs("], \"material\": ", out);
         BP_TRY(put_text(out, scene->materials[triangle->material].name, err));
@@ -447,6 +451,13 @@ static BpStatus put_capsules(FILE *out, const BpScene *scene, BpError *err) {
         put_number(out, capsule->radius);
         fputs(", \"material\": ", out);
         BP_TRY(put_text(out, scene->materials[capsule->material].name, err));
+        if (capsule->albedo[0] != BP_NO_ALBEDO) {
+            fputs(", \"colors\": [", out);
+            put_floats(out, scene->albedos[capsule->albedo[0]]);
+            fputs(", ", out);
+            put_floats(out, scene->albedos[capsule->albedo[1]]);
+            fputc(']', out);
+        }
         fputs(" }", out);
     }
     fputs("\n  ]", out);

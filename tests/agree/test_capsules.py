@@ -82,11 +82,51 @@ class Capsules(ScenePictures):
                 wrong += abs(away - radius) > 1e-5 and dark != (away < radius)
         self.assertEqual(wrong, 0)
 
+    # Under a white sky each point of a convex matte surface shows its albedo: that of the half of which the ball that a ray
+    # along z meets first, the highest on the axis, is part.
+    def test_colors(self):
+        ends, radius, colors = [[-1.2, -0.4, 0.7], [0.9, 1.1, -0.8]], 0.5, [[0.75, 0.25, 0.125], [0.125, 0.5, 0.875]]
+        square = {"image_width": 60, "aspect_ratio": 1, "samples_per_pixel": 2, "pixel_sampling": "center", "projection": "orthographic",
+                  "view_height": 4, "lookfrom": [0, 0, 9], "lookat": [0, 0, 0]}
+
+        def height(place, x, y):
+            at = [ends[0][a] + place * (ends[1][a] - ends[0][a]) for a in range(3)]
+            square_left = radius ** 2 - (x - at[0]) ** 2 - (y - at[1]) ** 2
+            return at[2] + square_left ** 0.5 if square_left > 0 else square_left - 9
+
+        for material in ("clay", "plain"):  # "plain" has a texture, in place of which they stand, too
+            materials = {**MATERIALS, "plain": {"type": "lambertian", "albedo": {"texture": "cells"}}}
+            textures = {"cells": {"type": "checker", "colors": [[0.9, 0.9, 0.9], [0.1, 0.1, 0.1]], "size": 0.3}}
+            document = {**scene(camera=square, background=[1, 1, 1], capsules=[{"ends": ends, "radius": radius, "material": material, "colors": colors}]),
+                        "materials": {"clay": materials["clay"], material: materials[material]}, "textures": textures}
+            *_, values = self.render(document)
+            seen = [0, 0]
+            for row in range(60):
+                for column in range(60):
+                    x, y = (column + 0.5) / 15 - 2, (row + 0.5) / 15 - 2
+                    low, high = 0.0, 1.0  # the height is concave where it is one
+                    for _ in range(60):
+                        one, other = low + (high - low) / 3, high - (high - low) / 3
+                        low, high = (one, high) if height(one, x, y) < height(other, x, y) else (low, other)
+                    if height(low, x, y) < -8:
+                        continue
+                    self.assertGreater(abs(low - 0.5), 1e-6)
+                    pixel = 3 * (60 * row + column)
+                    for channel in range(3):
+                        self.assertAlmostEqual(values[pixel + channel], colors[low > 0.5][channel], delta=2e-6, msg=f"{material} {x} {y} {low}")
+                    seen[low > 0.5] += 1
+            self.assertGreater(min(seen), 200)
+        checked = self.run_ballpark(scene(capsules=[{"ends": ends, "radius": radius, "material": "mirror", "colors": colors}]), "check")
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+
     def test_written_again(self):
-        document = scene(capsules=[bar("clay"), {"ends": [[1, 2, 3], [1.0625, 2, 3.5]], "radius": 1e-3, "material": "glass"}])
+        colors = [[0.5, 0.25, 0.125], [0, 1, 0.1]]
+        document = scene(capsules=[bar("clay"), bar("mirror", colors=colors), {"ends": [[1, 2, 3], [1.0625, 2, 3.5]], "radius": 1e-3, "material": "glass"}])
         made = self.run_ballpark(document, "scene")
         self.assertEqual(made.returncode, 0, made.stderr)
-        self.assertEqual(json.loads(made.stdout)["capsules"], document["capsules"])
+        again = json.loads(made.stdout)["capsules"]
+        self.assertAlmostEqual(again[1]["colors"][1].pop(), colors[1].pop(), delta=1e-8)  # colours are floats
+        self.assertEqual(again, document["capsules"])
 
     def test_refusals(self):
         there = {"lookfrom": [0, 0, 0.3], "lookat": [0, 0, -1]}
@@ -97,6 +137,11 @@ class Capsules(ScenePictures):
                 ("glass of capsules in a scene with media", {"media": {"fog": {"scattering": 1}}, "medium": "fog", "capsules": [bar("glass")]}),
                 ("capsules stand still", {"capsules": [bar("clay", center_end=[0, 0, 0])]}), ("capsules surround no media", {"capsules": [bar("clay", interior="fog")]}),
                 ("two points", {"capsules": [bar("clay", ends=[[0, 0, 0]])]}), ("1e9", {"capsules": [bar("clay", ends=[[0, 0, 0], [2e9, 0, 0]])]}),
+                ("capsules[0].colors: found colours for the material \"glass\", which has no albedo", {"capsules": [bar("glass", colors=[[0, 0, 0], [1, 1, 1]])]}),
+                ("capsules[0].colors: found a list of 1, expected two colours", {"capsules": [bar("clay", colors=[[0, 0, 0]])]}),
+                ("capsules[0].colors[1][2]: found 1.5, expected a share of light from 0 to 1", {"capsules": [bar("clay", colors=[[0, 0, 0], [0, 1, 1.5]])]}),
+                ("capsules[0].colors[0]: found 0.5, expected a colour", {"capsules": [bar("clay", colors=[0.5, 0.5])]}),
+                ("a capsule has two halves", {"capsules": [bar("clay", color=[0.5, 0.5, 0.5])]}),
                 ("which is glass too", {"capsules": [bar("glass"), bar("air", ends=BAR["ends"][::-1])]}),
                 ("move one of them slightly", {"camera": there, "capsules": [bar("clay", ends=[[-1, 0, 0], [1, 0, 0]])]})):
             made = self.run_ballpark(scene(**members), "render")
