@@ -24,9 +24,14 @@ static void fetch_surface(const Scene *scene, const Ray *ray, const Hit *hit, WI
     surface->albedo = vec3(gather_split_real(scene->slot_albedo, 0, colour), gather_split_real(scene->slot_albedo, 1u, colour),
                            gather_split_real(scene->slot_albedo, 2u, colour));
 #if EFFECT_CAPSULES
-    if (any_lane(sphere->beyond)) {
-        const vuint capsule = choose_uint(sphere->beyond, slot, splat_uint(0));
-        surface->albedo = choose3(sphere->beyond, other_colour(&scene->geometry, capsule), surface->albedo);
+#if EFFECT_TRIANGLES
+    const vbool other_half = sphere->beyond & vbool_not(flat);
+#else
+    const vbool other_half = sphere->beyond;
+#endif
+    if (any_lane(other_half)) {
+        const vuint capsule = choose_uint(other_half, slot, splat_uint(0));
+        surface->albedo = choose3(other_half, other_colour(&scene->geometry, capsule), surface->albedo);
     }
 #endif
     surface->kind = gather_uint(scene->material_kinds, kinds);

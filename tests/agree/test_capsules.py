@@ -119,6 +119,21 @@ class Capsules(ScenePictures):
         checked = self.run_ballpark(scene(capsules=[{"ends": ends, "radius": radius, "material": "mirror", "colors": colors}]), "check")
         self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
 
+    # Triangles look the same beside a capsule that is the first of all shapes in the tree: the half that their rays would meet of it
+    # says nothing about them.
+    def test_colors_beside_triangles(self):
+        square = {"image_width": 40, "aspect_ratio": 1, "samples_per_pixel": 2, "pixel_sampling": "center", "projection": "orthographic",
+                  "view_height": 4, "lookfrom": [0, 0, 9], "lookat": [0, 0, 0]}
+        wall = [{"corner": [-2, -2, -1], "u": [4, 0, 0], "v": [0, 4, 0], "material": "mirror"}]
+        colors = [[0.75, 0.25, 0.125], [0.125, 0.5, 0.875]]
+        sticks = [{"ends": [[-1.5, -1 + 0.5 * k, 4], [-1, -1 + 0.5 * k, 4]], "radius": 0.1, "material": "clay", "colors": colors} for k in range(5)]
+        for count in (1, 5):
+            *_, values = self.render(scene(camera=square, background=[1, 1, 1], quads=wall, capsules=sticks[:count]), "--depth", "2")
+            for row in range(40):
+                for column in range(20, 40):  # the way back of the mirror is as far from the capsules
+                    for channel, albedo in enumerate((0.9, 0.7, 0.5)):
+                        self.assertAlmostEqual(values[3 * (40 * row + column) + channel], albedo, delta=2e-6, msg=f"{count}: {column}, {row}")
+
     def test_written_again(self):
         colors = [[0.5, 0.25, 0.125], [0, 1, 0.1]]
         document = scene(capsules=[bar("clay"), bar("mirror", colors=colors), {"ends": [[1, 2, 3], [1.0625, 2, 3.5]], "radius": 1e-3, "material": "glass"}])
