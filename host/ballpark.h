@@ -178,7 +178,7 @@ BP_API BpStatus bp_scene_parse(const char *text, size_t length, const char *name
 
 /* A strided view of an array of the caller's, one row per sphere: number `column` of row `row` is
  * at data + row * row_stride + column * column_stride, in bytes. A row_stride of 0 gives every sphere the
- * same row. */
+ * same row. So for vertices, triangles and lines. */
 typedef enum BpNumberType { BP_NUMBER_FLOAT, BP_NUMBER_DOUBLE } BpNumberType;
 typedef struct BpRows {
     const void *data;
@@ -218,12 +218,40 @@ typedef struct BpMeshSet {
     uint32_t smooth; /* 1: also without them, by those of its faces */
 } BpMeshSet;
 
-/* The same with `mesh_count` meshes after the triangles that the document names. Triangles without an area
- * are left out. BP_ERR_SCENE names the vertex or triangle, counted from 0 in its mesh, and for glass that is
- * not closed the edge. */
+/* Lines of one material, as arrays: capsules, with a radius and round ends, a sphere where both ends are in
+ * one place. Zero it, then set what there is. */
+typedef struct BpLineSet {
+    size_t point_count, line_count;
+    BpRows point;         /* 3 columns, from -1e9 to 1e9, in the scene's unit of length */
+    const uint32_t *line; /* Optional. 2 of each: its ends, points counted from 0. NULL: line i has the points
+                             2 i and 2 i + 1 */
+    BpRows radius;        /* of lines; 1 column, from 1e-12 to 1e9 */
+    BpRows color[2];      /* of the halves by a line's first and second end, a row for each line; 3 columns,
+                             linear, from 0 to 1: both replace the material's albedo. data NULL: none */
+    const char *material; /* Optional. A name from the scene's "materials", which neither emits nor is an
+                             interface; NULL: matte */
+    const char *name;     /* Optional. What messages call the set; NULL: "the lines" */
+} BpLineSet;
+
+/* Shapes as arrays. Zero it, then set what there is. */
+typedef struct BpShapeSets {
+    const BpSphereSet *spheres;
+    size_t sphere_set_count;
+    const BpMeshSet *meshes;
+    size_t mesh_set_count;
+    const BpLineSet *lines;
+    size_t line_set_count;
+} BpShapeSets;
+
+/* The same with sets of several kinds of shapes, each after what the document names of its kind. A camera
+ * that is fitted to the particles is fitted to spheres and lines, and one that is fitted to the scene to
+ * meshes too. Triangles without an area are left out. `shapes` and its arrays are the caller's: they are read
+ * during the call, and may be released after it. Calls with different `scene` may run at once, with the same
+ * arrays too. BP_ERR_SCENE names the sphere, vertex, triangle or line, counted from 0 in its set, and for
+ * glass that is not closed the edge. BP_ERR_USAGE: an array is missing, or has an unknown type of number.
+ * *scene is NULL then. */
 BP_API BpStatus bp_scene_parse_with_shapes(const char *text, size_t length, const char *name,
-                                           const BpSphereSet *sets, size_t set_count, const BpMeshSet *meshes,
-                                           size_t mesh_count, BpScene **scene, BpError *err);
+                                           const BpShapeSets *shapes, BpScene **scene, BpError *err);
 
 BP_API void bp_scene_destroy(BpScene **scene);
 

@@ -57,6 +57,16 @@ BpStatus bp_parse_material_name(const BpNode *node, const BpMaterialIndex *index
     return BP_OK;
 }
 
+BpStatus bp_material_of_set(const BpMaterialIndex *index, const char *material, const char *set,
+                            BpScene *scene, uint32_t *found, BpError *err) {
+    *found = material == NULL ? bp_implicit_material(scene, err) : bp_material_find(index, material);
+    if (*found != UINT32_MAX) return BP_OK;
+    if (material == NULL) return BP_ERR_MEMORY;
+    char text[BP_MISSING_NAME_SIZE];
+    BP_TRY(bp_missing_material_text(index, material, text, err));
+    return bp_fail(err, BP_ERR_SCENE, "%s: %s", set, text);
+}
+
 /* Plain matte, whose colour each particle brings. */
 uint32_t bp_implicit_material(BpScene *scene, BpError *err) {
     if (scene->implicit_material != SIZE_MAX) return (uint32_t)scene->implicit_material;

@@ -26,6 +26,10 @@ uint32_t bp_material_find(const BpMaterialIndex *index, const char *name);
 /* Writes the message about a name that is not among them. Fails only if memory runs out. */
 BpStatus bp_missing_material_text(const BpMaterialIndex *index, const char *name,
                                   char out[BP_MISSING_NAME_SIZE], BpError *err);
+/* The same of what a caller hands over; `material`: Optional, NULL is that of shapes that name none. Errors
+ * begin with `set`, what messages call it. */
+BpStatus bp_material_of_set(const BpMaterialIndex *index, const char *material, const char *set,
+                            BpScene *scene, uint32_t *found, BpError *err);
 /* The material of spheres that name none: matte. It is made when it is first asked for. UINT32_MAX: out of
  * memory, which `err` says. */
 uint32_t bp_implicit_material(BpScene *scene, BpError *err);

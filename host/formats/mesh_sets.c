@@ -13,15 +13,11 @@ static const char *name_of(const BpMeshSet *set) {
     return set->name != NULL ? set->name : "the mesh";
 }
 
-static bool is_array(const BpRows *rows) {
-    return rows->data != NULL && (rows->type == BP_NUMBER_FLOAT || rows->type == BP_NUMBER_DOUBLE);
-}
-
 static BpStatus check_set(const BpMeshSet *set, BpError *err) {
-    const bool whole = set->vertex_count == 0 || is_array(&set->vertex),
+    const bool whole = set->vertex_count == 0 || bp_rows_are_numbers(&set->vertex),
                cut = set->triangle_count == 0 || set->triangle != NULL;
-    const bool normals = set->normal.data == NULL || is_array(&set->normal);
-    if (!whole || !cut || !normals || (set->color.data != NULL && !is_array(&set->color)))
+    const bool normals = set->normal.data == NULL || bp_rows_are_numbers(&set->normal);
+    if (!whole || !cut || !normals || (set->color.data != NULL && !bp_rows_are_numbers(&set->color)))
         return bp_fail(err, BP_ERR_USAGE, "%s: found no numbers for %s, expected some", name_of(set),
                        !whole     ? "vertices"
                        : !cut     ? "triangles"
@@ -85,15 +81,9 @@ static BpStatus read_triangle(const BpMeshSet *set, size_t t, BpMesh *mesh, BpEr
         mesh->dropped_degenerate++;
         return BP_OK;
     }
-    for (int c = 0; c < 3 && mesh->face_colors != NULL; c++) {
-        const double share = bp_rows_number(&set->color, t, c);
-        if (!(share >= 0 && share <= 1))
-            return bp_fail(
-                err, BP_ERR_SCENE,
-                "triangle %zu (from 0) of %s: color: found %g, expected shares of light from 0 to 1", t,
-                name_of(set), share);
-        mesh->face_colors[mesh->face_count][c] = (float)share;
-    }
+    if (mesh->face_colors != NULL)
+        BP_TRY(bp_rows_color(&set->color, t, "triangle", name_of(set), mesh->face_colors[mesh->face_count],
+                             err));
     for (int k = 0; k < 3 && mesh->face_normals != NULL; k++)
         BP_TRY(read_normal(set, corners[k], mesh->face_normals[mesh->face_count][k], err));
     memcpy(mesh->faces[mesh->face_count++], corners, sizeof *mesh->faces);
@@ -108,17 +98,6 @@ static BpStatus read_set(const BpMeshSet *set, BpMesh *mesh, BpError *err) {
     return BP_OK;
 }
 
-static BpStatus find_material(const BpMeshSet *set, const BpMaterialIndex *index, BpScene *scene,
-                              uint32_t *material, BpError *err) {
-    *material =
-        set->material == NULL ? bp_implicit_material(scene, err) : bp_material_find(index, set->material);
-    if (*material != UINT32_MAX) return BP_OK;
-    if (set->material == NULL) return BP_ERR_MEMORY;
-    char text[BP_MISSING_NAME_SIZE];
-    BP_TRY(bp_missing_material_text(index, set->material, text, err));
-    return bp_fail(err, BP_ERR_SCENE, "%s: %s", name_of(set), text);
-}
-
 static BpStatus add_set(const BpMeshSet *set, const BpMaterialIndex *index, BpScene *scene, BpError *err) {
     BpMesh mesh = {0};
     BpMeshUse use = {.name = name_of(set),
@@ -126,7 +105,7 @@ static BpStatus add_set(const BpMeshSet *set, const BpMaterialIndex *index, BpSc
                      .placement = bp_placement((const double[3]){1, 1, 1}, (const double[3]){0, 0, 0},
                                                (const double[3]){0, 0, 0})};
     const size_t first = scene->triangle_count;
-    BpStatus status = find_material(set, index, scene, &use.material, err);
+    BpStatus status = bp_material_of_set(index, set->material, use.name, scene, &use.material, err);
     if (status == BP_OK) status = read_set(set, &mesh, err);
     if (status == BP_OK) status = bp_mesh_add_triangles(&mesh, &use, scene, err);
     bp_mesh_clear(&mesh);
@@ -135,9 +114,9 @@ static BpStatus add_set(const BpMeshSet *set, const BpMaterialIndex *index, BpSc
     return status;
 }
 
-BpStatus bp_add_mesh_sets(const BpMaterialIndex *index, const BpSceneChanges *changes, BpScene *scene,
+BpStatus bp_add_mesh_sets(const BpMaterialIndex *index, const BpShapeSets *shapes, BpScene *scene,
                           BpError *err) {
-    for (size_t s = 0; s < changes->mesh_set_count; s++)
-        BP_TRY(add_set(&changes->meshes[s], index, scene, err));
+    for (size_t s = 0; s < shapes->mesh_set_count; s++)
+        BP_TRY(add_set(&shapes->meshes[s], index, scene, err));
     return BP_OK;
 }

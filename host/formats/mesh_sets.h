@@ -6,10 +6,9 @@
 #define BP_FORMATS_MESH_SETS_H
 
 #include "material_index.h"
-#include "scene_changes.h"
 
-/* Adds the changes' meshes to the scene, whose materials have room for one more. */
-BpStatus bp_add_mesh_sets(const BpMaterialIndex *index, const BpSceneChanges *changes, BpScene *scene,
+/* Adds the meshes to the scene, whose materials have room for one more. */
+BpStatus bp_add_mesh_sets(const BpMaterialIndex *index, const BpShapeSets *shapes, BpScene *scene,
                           BpError *err);
 
 #endif

@@ -87,6 +87,12 @@ BpStatus bp_keep_mesh_file(const char *file, size_t first, const char *entry, Bp
     return keep_file(file, first, entry, &scene->mesh_files, &scene->mesh_file_count, err);
 }
 
+BpStatus bp_keep_line_set(const char *name, size_t first, BpScene *scene, BpError *err) {
+    BP_TRY(keep_file(name, first, NULL, &scene->line_sets, &scene->line_set_count, err));
+    scene->line_sets[scene->line_set_count - 1].in_memory = true;
+    return BP_OK;
+}
+
 /* ---- a document at another place ----------------------------------------------------------------------- */
 
 /* The part of `path` below the folder of `to`, or NULL. */

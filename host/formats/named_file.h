@@ -17,10 +17,11 @@ BpStatus bp_node_open_file(const BpNode *node, const char *path, const char *exp
                            uint64_t *size, BpError *err);
 /* Adds the place in the scene that names the file to an error in the file of points. */
 void bp_name_document(const BpNode *file_node, const char *what, BpError *err);
-/* Keeps the name of a file of points or of a mesh, whose shapes begin at `first`. `entry`: see BpShapeFile,
- * copied. */
+/* Keeps the name of a file of points or of a mesh, or of a set of lines, whose shapes begin at `first`.
+ * `entry`: see BpShapeFile, copied. */
 BpStatus bp_keep_point_file(const char *file, size_t first, const char *entry, BpScene *scene, BpError *err);
 BpStatus bp_keep_mesh_file(const char *file, size_t first, const char *entry, BpScene *scene, BpError *err);
+BpStatus bp_keep_line_set(const char *name, size_t first, BpScene *scene, BpError *err);
 
 /* Names the file of an entry of "particles" or "meshes" as a document at the path `to` must: by its path
  * below the folder of `to` where it lies there, otherwise by its absolute path. `document`: the path of what

@@ -32,11 +32,8 @@ typedef struct BpSceneChanges {
     const char *projection; /* Optional. "perspective" or "orthographic", instead of the document's */
     const char *lighting; /* Optional. A name of lighting.h, instead of the document's light or background */
     const char *fresnel;  /* Optional. "schlick" or "exact", for all materials that have such a member */
-    size_t *fresnel_counts;     /* Optional: in how many it was different, and how many have it */
-    const BpSphereSet *spheres; /* Optional: spheres after all others */
-    size_t sphere_set_count;
-    const BpMeshSet *meshes; /* Optional: triangles after all others */
-    size_t mesh_set_count;
+    size_t *fresnel_counts; /* Optional: in how many it was different, and how many have it */
+    BpShapeSets shapes;     /* after all others */
 } BpSceneChanges;
 
 #endif

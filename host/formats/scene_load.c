@@ -41,14 +41,13 @@ BpStatus bp_scene_parse(const char *text, size_t length, const char *name, BpSce
 BpStatus bp_scene_parse_with_spheres(const char *text, size_t length, const char *name,
                                      const BpSphereSet *sets, size_t set_count, BpScene **scene,
                                      BpError *err) {
-    return bp_scene_parse_with_shapes(text, length, name, sets, set_count, NULL, 0, scene, err);
+    const BpShapeSets shapes = {.spheres = sets, .sphere_set_count = set_count};
+    return bp_scene_parse_with_shapes(text, length, name, &shapes, scene, err);
 }
 
 BpStatus bp_scene_parse_with_shapes(const char *text, size_t length, const char *name,
-                                    const BpSphereSet *sets, size_t set_count, const BpMeshSet *meshes,
-                                    size_t mesh_count, BpScene **scene, BpError *err) {
-    const BpSceneChanges changes = {
-        .spheres = sets, .sphere_set_count = set_count, .meshes = meshes, .mesh_set_count = mesh_count};
+                                    const BpShapeSets *shapes, BpScene **scene, BpError *err) {
+    const BpSceneChanges changes = {.shapes = *shapes};
     return bp_scene_parse_changed(text, length, name, &changes, scene, err);
 }
 

@@ -1,6 +1,7 @@
 /* scene_parse.c: see scene_parse.h. */
 #include "scene_parse.h"
 
+#include "line_sets.h"
 #include "material_index.h"
 #include "mesh_sets.h"
 #include "scene_background.h"
@@ -153,8 +154,9 @@ BpStatus bp_parse_scene(const BpNode *root, const BpSceneChanges *changes, BpSce
     if (status == BP_OK) status = bp_parse_meshes(&meshes, &index, changes, scene, err);
     if (status == BP_OK) status = bp_parse_clouds(&clouds, &index, changes->flags, scene, err);
     if (status == BP_OK) status = bp_parse_particles(&particles, &index, changes, scene, err);
-    if (status == BP_OK) status = bp_add_sphere_sets(&index, changes, scene, err);
-    if (status == BP_OK) status = bp_add_mesh_sets(&index, changes, scene, err);
+    if (status == BP_OK) status = bp_add_sphere_sets(&index, &changes->shapes, scene, err);
+    if (status == BP_OK) status = bp_add_mesh_sets(&index, &changes->shapes, scene, err);
+    if (status == BP_OK) status = bp_add_line_sets(&index, &changes->shapes, scene, err);
     free(index.by_name);
     BP_TRY(status);
     if (changes->fresnel != NULL) BP_TRY(choose_fresnel(changes, scene, err));

@@ -25,31 +25,6 @@ static BpStatus check_set(const BpSphereSet *set, BpError *err) {
     return BP_OK;
 }
 
-static BpStatus find_material(const BpSphereSet *set, const BpMaterialIndex *index, BpScene *scene,
-                              uint32_t *material, BpError *err) {
-    if (set->material == NULL) {
-        *material = bp_implicit_material(scene, err);
-        return *material == UINT32_MAX ? BP_ERR_MEMORY : BP_OK;
-    }
-    *material = bp_material_find(index, set->material);
-    if (*material != UINT32_MAX) return BP_OK;
-    char text[BP_MISSING_NAME_SIZE];
-    BP_TRY(bp_missing_material_text(index, set->material, text, err));
-    return bp_fail(err, BP_ERR_SCENE, "%s: %s", name_of(set), text);
-}
-
-static BpStatus read_color(const BpSphereSet *set, size_t i, float albedo[3], BpError *err) {
-    for (ptrdiff_t c = 0; c < 3; c++) {
-        const double share = bp_rows_number(&set->color, i, c);
-        if (!(share >= 0 && share <= 1))
-            return bp_fail(err, BP_ERR_SCENE,
-                           "sphere %zu (from 0) of %s: color: found %g, expected shares of light from 0 to 1",
-                           i, name_of(set), share);
-        albedo[c] = (float)share;
-    }
-    return BP_OK;
-}
-
 static BpStatus read_spheres(const BpSphereSet *set, uint32_t material, bool colored, BpScene *scene,
                              BpError *err) {
     for (size_t i = 0; i < set->count; i++) {
@@ -62,17 +37,19 @@ static BpStatus read_spheres(const BpSphereSet *set, uint32_t material, bool col
         if (bp_sphere_find_fault(sphere, &fault))
             return bp_fail(err, BP_ERR_SCENE, "sphere %zu (from 0) of %s: %s: %s", i, name_of(set),
                            fault.member, fault.text);
-        if (colored) BP_TRY(read_color(set, i, scene->albedos[scene->albedo_count++], err));
+        if (colored)
+            BP_TRY(bp_rows_color(&set->color, i, "sphere", name_of(set),
+                                 scene->albedos[scene->albedo_count++], err));
         scene->sphere_count++;
     }
     return BP_OK;
 }
 
 /* Room for all of them at once. */
-static BpStatus make_room(const BpSceneChanges *changes, BpScene *scene, BpError *err) {
+static BpStatus make_room(const BpShapeSets *shapes, BpScene *scene, BpError *err) {
     size_t count = scene->sphere_count, colors = scene->albedo_count;
-    for (size_t s = 0; s < changes->sphere_set_count; s++) {
-        const BpSphereSet *const set = &changes->spheres[s];
+    for (size_t s = 0; s < shapes->sphere_set_count; s++) {
+        const BpSphereSet *const set = &shapes->spheres[s];
         BP_TRY(check_set(set, err));
         if (set->count > BP_SPHERES_MAX || count > BP_SPHERES_MAX - set->count)
             return bp_fail(err, BP_ERR_SCENE, "%s: found more than %u spheres, expected fewer", name_of(set),
@@ -96,15 +73,15 @@ static bool is_flat(const BpSphere *spheres, size_t count) {
     return count > 2;
 }
 
-BpStatus bp_add_sphere_sets(const BpMaterialIndex *index, const BpSceneChanges *changes, BpScene *scene,
+BpStatus bp_add_sphere_sets(const BpMaterialIndex *index, const BpShapeSets *shapes, BpScene *scene,
                             BpError *err) {
-    if (changes->sphere_set_count == 0) return BP_OK;
+    if (shapes->sphere_set_count == 0) return BP_OK;
     const size_t first = scene->sphere_count;
-    BP_TRY(make_room(changes, scene, err));
-    for (size_t s = 0; s < changes->sphere_set_count; s++) {
-        const BpSphereSet *const set = &changes->spheres[s];
+    BP_TRY(make_room(shapes, scene, err));
+    for (size_t s = 0; s < shapes->sphere_set_count; s++) {
+        const BpSphereSet *const set = &shapes->spheres[s];
         uint32_t material = 0;
-        BP_TRY(find_material(set, index, scene, &material, err));
+        BP_TRY(bp_material_of_set(index, set->material, name_of(set), scene, &material, err));
         const bool colored =
             set->color.data != NULL && bp_material_has(scene->materials[material].kind, BP_MEMBER_ALBEDO);
         BP_TRY(bp_keep_point_file(name_of(set), scene->sphere_count, NULL, scene, err));

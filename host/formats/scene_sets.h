@@ -6,10 +6,9 @@
 #define BP_FORMATS_SCENE_SETS_H
 
 #include "material_index.h"
-#include "scene_changes.h"
 
-/* Adds the changes' sets of spheres to the scene, whose materials have room for one more. */
-BpStatus bp_add_sphere_sets(const BpMaterialIndex *index, const BpSceneChanges *changes, BpScene *scene,
+/* Adds the sets of spheres to the scene, whose materials have room for one more. */
+BpStatus bp_add_sphere_sets(const BpMaterialIndex *index, const BpShapeSets *shapes, BpScene *scene,
                             BpError *err);
 
 #endif

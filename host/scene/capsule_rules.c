@@ -11,7 +11,7 @@
 
 #define ON_CAMERA 1.0e-12 /* over the size */
 
-static bool place_fault(const BpCapsule *capsule, BpFault *fault) {
+bool bp_capsule_place_fault(const BpCapsule *capsule, BpFault *fault) {
     char text[BP_NUMBER_TEXT_SIZE];
     for (int k = 0; k < 2; k++)
         for (int a = 0; a < 3; a++)
@@ -21,9 +21,10 @@ static bool place_fault(const BpCapsule *capsule, BpFault *fault) {
                     "found %s, expected coordinates from -1e9 to 1e9; choose a larger unit of length",
                     bp_number_text(capsule->ends[k][a], text));
     if (capsule->radius >= BP_CAPSULE_RADIUS_MIN && capsule->radius <= BP_VERTEX_MAX) return false;
-    return bp_fault_set(fault, BP_FAULT_CAPSULE, "radius",
-                        "found %s, expected a radius from 1e-12 to 1e9: capsules cannot be turned inside out",
-                        bp_number_text(capsule->radius, text));
+    return bp_fault_set(
+        fault, BP_FAULT_CAPSULE, "radius",
+        "found %s, expected a radius from 1e-12 to 1e9: only spheres can be turned inside out",
+        bp_number_text(capsule->radius, text));
 }
 
 bool bp_capsule_material_fault(const BpScene *scene, uint32_t number, BpFault *fault) {
@@ -111,7 +112,8 @@ BpStatus bp_scene_find_capsule_fault(const BpScene *scene, BpFault *fault, BpErr
                          scene->material_count);
             return BP_OK;
         }
-        if (place_fault(capsule, fault) || bp_capsule_material_fault(scene, capsule->material, fault))
+        if (bp_capsule_place_fault(capsule, fault) ||
+            bp_capsule_material_fault(scene, capsule->material, fault))
             return BP_OK;
         glass += bp_material_is(scene->materials[capsule->material].kind, BP_HAS_INSIDE);
         if (pinhole && holds_point(capsule, camera->lookfrom)) {

@@ -12,6 +12,9 @@
  * BP_ERR_MEMORY. */
 BpStatus bp_scene_find_capsule_fault(const BpScene *scene, BpFault *fault, BpError *err);
 
+/* Whether the ends and the radius of one are not as said above. */
+bool bp_capsule_place_fault(const BpCapsule *capsule, BpFault *fault);
+
 /* Whether capsules may not have this material. */
 bool bp_capsule_material_fault(const BpScene *scene, uint32_t material, BpFault *fault);
 

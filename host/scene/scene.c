@@ -179,6 +179,7 @@ void bp_scene_destroy(BpScene **scene) {
     free(s->albedos);
     free_files(s->point_files, s->point_file_count);
     free_files(s->mesh_files, s->mesh_file_count);
+    free_files(s->line_sets, s->line_set_count);
     free(s->path);
     free(s->title);
     free(s->source);
@@ -258,7 +259,12 @@ BpStatus bp_scene_make_normals(BpScene *scene, size_t count, BpError *err) {
 
 const char *bp_capsule_name(const BpScene *scene, size_t capsule, char text[BP_SPHERE_NAME_SIZE]) {
     const size_t listed = scene->listed_capsules;
-    if (capsule < listed)
+    const BpShapeFile *set = file_of(scene->line_sets, scene->line_set_count, capsule);
+    char name[64];
+    if (set != NULL) {
+        bp_printable(set->file, name, sizeof name);
+        snprintf(text, BP_SPHERE_NAME_SIZE, "line %zu (from 0) of %s", capsule - set->first, name);
+    } else if (capsule < listed)
         snprintf(text, BP_SPHERE_NAME_SIZE, "capsules[%zu]", capsule);
     else
         snprintf(text, BP_SPHERE_NAME_SIZE, "capsule %zu (from 0) of the particles", capsule - listed);

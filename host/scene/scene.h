@@ -216,8 +216,11 @@ struct BpScene {
                                side; all 0: the triangle is flat */
     size_t normal_count;
     BpCapsule *capsules;
-    size_t capsule_count, listed_capsules; /* those that are not listed come from "particles" */
-    BpShapeFile *mesh_files;               /* in the order of their triangles */
+    size_t capsule_count,
+        listed_capsules;    /* those that are not listed come from "particles" and sets of lines */
+    BpShapeFile *line_sets; /* in the order of their capsules, all of them in memory */
+    size_t line_set_count;
+    BpShapeFile *mesh_files; /* in the order of their triangles */
     size_t mesh_file_count;
     float (*albedos)[3]; /* linear, in [0,1]; of points and triangles that bring their own colour */
     size_t albedo_count;
@@ -274,7 +277,7 @@ const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPH
  * (from 0) of bunny.ply", counted without those that were left out. */
 const char *bp_triangle_name(const BpScene *scene, size_t triangle, char text[BP_SPHERE_NAME_SIZE]);
 
-/* The same of a capsule, and of any shape. */
+/* The same of a capsule, "line 3 (from 0) of bonds" where it comes from a set, and of any shape. */
 const char *bp_capsule_name(const BpScene *scene, size_t capsule, char text[BP_SPHERE_NAME_SIZE]);
 const char *bp_shape_name(const BpScene *scene, size_t shape, char text[BP_SPHERE_NAME_SIZE]);
 

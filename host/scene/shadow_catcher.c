@@ -5,6 +5,14 @@
 #include <math.h>
 #include <string.h>
 
+/* Where particles stand on the plane, meshes that a caller handed over beside them do so too. */
+static size_t first_triangle(const BpScene *scene) {
+    size_t mesh = 0;
+    if (!scene->has_particles) return 0;
+    while (mesh < scene->mesh_file_count && !scene->mesh_files[mesh].in_memory) mesh++;
+    return mesh < scene->mesh_file_count ? scene->mesh_files[mesh].first : scene->triangle_count;
+}
+
 void bp_shadow_catcher_place(BpScene *scene) {
     BpShadowCatcher *const catcher = &scene->shadow_catcher;
     double *const normal = catcher->normal;
@@ -25,7 +33,7 @@ void bp_shadow_catcher_place(BpScene *scene) {
         if (bp_sphere_moves(scene, i)) middle = fmin(middle, bp_dot(normal, bp_sphere_end(scene, i)));
         lowest = fmin(lowest, middle - fabs(sphere->radius));
     }
-    for (size_t i = 0; i < scene->triangle_count && !scene->has_particles; i++)
+    for (size_t i = first_triangle(scene); i < scene->triangle_count; i++)
         for (int k = 0; k < 3; k++) lowest = fmin(lowest, bp_dot(normal, scene->triangles[i].vertices[k]));
     for (size_t i = scene->has_particles ? scene->listed_capsules : 0; i < scene->capsule_count; i++)
         for (int k = 0; k < 2; k++)

@@ -9,14 +9,15 @@ import typing
 
 from . import _library
 from ._library import DeviceError, Error, SceneError
+from ._lines import Lines
 from ._mesh import Mesh
 from ._particles import from_ase, from_gsd, from_mdanalysis
 from ._picture import Picture
 from ._render import Device, Interrupted, Progress, Render, devices, make_scene, render
 from ._scene import Camera, Scene, Spheres
 
-__all__ = ["Camera", "Device", "DeviceError", "Error", "Interrupted", "Mesh", "Picture", "Progress", "Render", "Scene",
-           "SceneError", "Spheres", "devices", "from_ase", "from_gsd", "from_mdanalysis", "library_version",
+__all__ = ["Camera", "Device", "DeviceError", "Error", "Interrupted", "Lines", "Mesh", "Picture", "Progress", "Render",
+           "Scene", "SceneError", "Spheres", "devices", "from_ase", "from_gsd", "from_mdanalysis", "library_version",
            "make_scene", "render"]
 
 

@@ -60,6 +60,16 @@ class BpMeshSet(c.Structure):
                 ("color", BpRows), ("material", c.c_char_p), ("name", c.c_char_p), ("normal", BpRows), ("smooth", c.c_uint32)]
 
 
+class BpLineSet(c.Structure):
+    _fields_ = [("point_count", c.c_size_t), ("line_count", c.c_size_t), ("point", BpRows), ("line", c.c_void_p), ("radius", BpRows),
+                ("color", BpRows * 2), ("material", c.c_char_p), ("name", c.c_char_p)]
+
+
+class BpShapeSets(c.Structure):
+    _fields_ = [("spheres", c.POINTER(BpSphereSet)), ("sphere_set_count", c.c_size_t), ("meshes", c.POINTER(BpMeshSet)),
+                ("mesh_set_count", c.c_size_t), ("lines", c.POINTER(BpLineSet)), ("line_set_count", c.c_size_t)]
+
+
 class BpSceneInfo(c.Structure):
     _fields_ = [("title", c.c_char_p), ("source", c.c_char_p), ("width", c.c_uint32), ("height", c.c_uint32),
                 ("samples_per_pixel", c.c_uint32), ("max_depth", c.c_uint32), ("spheres", c.c_size_t),
@@ -131,8 +141,8 @@ class BpFilmInfo(c.Structure):
 
 # Their C names are those of the classes.
 STRUCTS: typing.List[typing.Type[c.Structure]] = [
-    BpError, BpRows, BpSphereSet, BpMeshSet, BpSceneInfo, BpCameraInfo, BpElementInfo, BpDeviceInfo, BpRenderOptions, BpProgress,
-    BpStopRule, BpStopEstimate, BpPicture, BpFilmInfo]
+    BpError, BpRows, BpSphereSet, BpMeshSet, BpLineSet, BpShapeSets, BpSceneInfo, BpCameraInfo, BpElementInfo, BpDeviceInfo,
+    BpRenderOptions, BpProgress, BpStopRule, BpStopEstimate, BpPicture, BpFilmInfo]
 
 INTERFACE = 2  # BP_INTERFACE_PYTHON: messages name arguments, not options of the command line
 
@@ -151,8 +161,7 @@ _VECTOR = c.c_double * 3
 # Functions that return a status take the error last, which call() adds.
 _STATUS: typing.Dict[str, typing.List[typing.Any]] = {
     "bp_scene_load": [c.c_char_p, _HANDLE],
-    "bp_scene_parse_with_shapes": [c.c_char_p, c.c_size_t, c.c_char_p, c.POINTER(BpSphereSet), c.c_size_t,
-                                   c.POINTER(BpMeshSet), c.c_size_t, _HANDLE],
+    "bp_scene_parse_with_shapes": [c.c_char_p, c.c_size_t, c.c_char_p, c.POINTER(BpShapeSets), _HANDLE],
     "bp_scene_set_width": [c.c_void_p, c.c_uint32],
     "bp_devices_list": [c.POINTER(c.POINTER(BpDeviceInfo)), c.POINTER(c.c_size_t)],
     "bp_device_find": [c.c_char_p, c.POINTER(BpDeviceInfo)],

@@ -101,7 +101,7 @@ class Mesh:
         shape = () if self.colors is None or isinstance(self.colors, str) else read(self.colors, "colors")[0].shape
         one_for_all = shape == (3,) and not self.cmap and self.color_range is None
         of_vertices = shape[:1] == (count,) and count != len(corners) and not one_for_all
-        colors = linear_colors(self.colors, count if of_vertices else len(corners), None, self.cmap, self.color_range)
+        colors = linear_colors(self.colors, count if of_vertices else len(corners), None, self.cmap, self.color_range, "colors")
         if colors is None or colors.ndim == 1:
             return colors
         missing = np.flatnonzero(np.isnan(colors).any(axis=1))

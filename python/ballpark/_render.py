@@ -23,8 +23,9 @@ from ._arguments import ADAPTERS, c_text, warn, whole_number, wrong_type
 from ._colors import Color
 from ._interrupt import CtrlC, Job, interruptible
 from ._picture import Picture
+from ._lines import Lines
 from ._mesh import Mesh
-from ._scene import Document, Scene, Shape, Spheres, list_of_shapes, shape_document
+from ._scene import SHAPES, Document, Scene, Shape, Spheres, list_of_shapes, shape_document
 
 
 class Interrupted(KeyboardInterrupt):
@@ -278,18 +279,23 @@ Subject = typing.Union[Scene, Shape, typing.Sequence[Shape], Document, str, "os.
 
 
 def _is_shapes(subject: typing.Any) -> bool:
-    return isinstance(subject, (Spheres, Mesh)) or (
-        isinstance(subject, (list, tuple)) and any(isinstance(one, (Spheres, Mesh)) for one in subject))
+    return isinstance(subject, SHAPES) or (isinstance(subject, (list, tuple)) and any(isinstance(one, SHAPES) for one in subject))
 
 
-def _with_mesh(subject: typing.Any, arrays: typing.Dict[str, typing.Any]) -> typing.Any:
-    """The subject, or the mesh of these arrays in its place."""
+def _with_arrays(subject: typing.Any, arrays: typing.Dict[str, typing.Any]) -> typing.Any:
+    """The subject, or the mesh or the lines of these arrays in its place."""
     given = [name for name, value in arrays.items() if value is not None]
     if not given:
         return subject
     if subject is not None:
-        raise TypeError(f"{given[0]}: found beside what is to be rendered, expected one or the other; several meshes are a list of "
-                        "ballpark.Mesh")
+        raise TypeError(f"{given[0]}: found beside what is to be rendered, expected one or the other; several shapes are a list of "
+                        "ballpark.Spheres, ballpark.Mesh and ballpark.Lines")
+    if arrays["lines"] is not None:
+        for name in ("faces", "normals"):
+            if arrays[name] is not None:
+                raise TypeError(f"{name}: found beside lines, expected one or the other; both are a list of ballpark.Mesh and ballpark.Lines")
+        return Lines(arrays["lines"], arrays["vertices"], colors=arrays["colors"])
+    del arrays["lines"]
     for name in ("vertices", "faces"):
         if arrays[name] is None:
             raise TypeError(f"{name}: found none, expected them beside {given[0]}")
@@ -302,7 +308,8 @@ def _is_array(subject: typing.Any) -> bool:
 
 def make_scene(subject: typing.Optional[Subject] = None, *, vertices: typing.Optional[npt.ArrayLike] = None,
                faces: typing.Optional[npt.ArrayLike] = None, normals: typing.Optional[npt.ArrayLike] = None,
-               colors: typing.Optional[Color] = None, radius: typing.Optional[npt.ArrayLike] = None,
+               lines: typing.Optional[npt.ArrayLike] = None, colors: typing.Optional[Color] = None,
+               radius: typing.Optional[npt.ArrayLike] = None,
                color: typing.Optional[Color] = None, material: typing.Union[None, str, Document] = None,
                cmap: typing.Optional[str] = None, color_range: typing.Optional[typing.Tuple[float, float]] = None,
                up: typing.Optional[str] = None, camera: typing.Optional[Document] = None,
@@ -310,7 +317,7 @@ def make_scene(subject: typing.Optional[Subject] = None, *, vertices: typing.Opt
                materials: typing.Optional[Document] = None, background: typing.Any = None,
                lighting: typing.Optional[str] = None, backdrop: typing.Any = None) -> Scene:
     """The scene that render() would render of the same arguments; its camera can be used for other pictures."""
-    subject = _with_mesh(subject, {"vertices": vertices, "faces": faces, "normals": normals, "colors": colors})
+    subject = _with_arrays(subject, {"vertices": vertices, "faces": faces, "normals": normals, "lines": lines, "colors": colors})
     looks: typing.Dict[str, typing.Any] = {"radius": radius, "color": color, "material": material, "cmap": cmap,
                                            "color_range": color_range,
                                            "up": up}
@@ -335,14 +342,13 @@ def make_scene(subject: typing.Optional[Subject] = None, *, vertices: typing.Opt
     shapes: typing.List[Shape]
     if _is_shapes(subject):
         shapes = list_of_shapes(subject)
-        has_mesh = any(isinstance(one, Mesh) for one in shapes)
-        for name in ("radius", "color"):
-            if name in given and has_mesh:
-                raise lib.SceneError(f"{name}: found for a mesh, expected {'colors' if name == 'color' else 'none'}")
+        for name, kind, noun in (("radius", Mesh, "a mesh"), ("color", Mesh, "a mesh"), ("color", Lines, "lines")):
+            if name in given and any(isinstance(one, kind) for one in shapes):
+                raise lib.SceneError(f"{name}: found for {noun}, expected {'colors' if name == 'color' else 'none'}")
         shapes = [dataclasses.replace(one, **given) for one in shapes]
     elif not _is_array(subject) or type(subject).__module__.partition(".")[0] in ADAPTERS:
-        raise wrong_type("ballpark.render", subject, "positions (N, 3), Spheres, a Mesh, a dict, a Scene, the path of a file, or "
-                         "vertices= and faces=")
+        raise wrong_type("ballpark.render", subject, "positions (N, 3), Spheres, a Mesh, Lines, a dict, a Scene, the path of a file, "
+                         "lines=, or vertices= and faces=")
     else:
         shapes = [Spheres(typing.cast(npt.ArrayLike, subject), **given)]
     return Scene(shape_document(shapes, camera, width, height, scene_members), shapes)
@@ -363,7 +369,8 @@ def _refuse_unknown(options: typing.Dict[str, typing.Any]) -> None:
 
 def render(subject: typing.Optional[Subject] = None, *, vertices: typing.Optional[npt.ArrayLike] = None,
            faces: typing.Optional[npt.ArrayLike] = None, normals: typing.Optional[npt.ArrayLike] = None,
-           colors: typing.Optional[Color] = None, radius: typing.Optional[npt.ArrayLike] = None, color: typing.Optional[Color] = None,
+           lines: typing.Optional[npt.ArrayLike] = None, colors: typing.Optional[Color] = None,
+           radius: typing.Optional[npt.ArrayLike] = None, color: typing.Optional[Color] = None,
            material: typing.Union[None, str, Document] = None, cmap: typing.Optional[str] = None,
            color_range: typing.Optional[typing.Tuple[float, float]] = None, up: typing.Optional[str] = None,
            camera: typing.Optional[Document] = None, width: typing.Optional[int] = None,
@@ -373,10 +380,11 @@ def render(subject: typing.Optional[Subject] = None, *, vertices: typing.Optiona
            **options: typing.Any) -> Picture:
     """Renders a picture.
 
-    subject: positions (N, 3); Spheres, Meshes, or a list of them; a scene as a dict, a Scene, or the path of a scene, of a
-    file of particles or of a mesh. Or in its place vertices, faces, normals and colors of a mesh, as in Mesh.
-    For positions and Spheres: radius, color, material, cmap, color_range and up as in Spheres; camera: members of the
-    scene's "camera" (without lookfrom, lookat or focus_dist it is fitted to the spheres); width, height: of the picture;
+    subject: positions (N, 3); Spheres, Meshes, Lines, or a list of them; a scene as a dict, a Scene, or the path of a scene, of a
+    file of particles or of a mesh. Or in its place vertices, faces, normals and colors of a mesh, as in Mesh, or lines, vertices
+    and colors of lines, as in Lines.
+    For positions and Spheres: radius, color, material, cmap, color_range and up as in Spheres; for Lines: those but
+    color; camera: members of the scene's "camera" (without lookfrom, lookat or focus_dist it is fitted to the shapes); width, height: of the picture;
     materials, background, lighting, backdrop: as in a scene. Without background and lighting, the light is "soft" on white, and for
     a mesh that of a "studio".
     progress: True for a line on standard error, or a function that is called with a Progress about five times a second;
@@ -390,9 +398,9 @@ def render(subject: typing.Optional[Subject] = None, *, vertices: typing.Optiona
         raise wrong_type("progress", progress, "True or a function")
     report = _bar if progress is True else progress if callable(progress) else None
     try:
-        scene = make_scene(subject, vertices=vertices, faces=faces, normals=normals, colors=colors, radius=radius, color=color, material=material, cmap=cmap, color_range=color_range,
-                           up=up, camera=camera, width=width, height=height, materials=materials, background=background,
-                           lighting=lighting, backdrop=backdrop)
+        scene = make_scene(subject, vertices=vertices, faces=faces, normals=normals, lines=lines, colors=colors, radius=radius,
+                           color=color, material=material, cmap=cmap, color_range=color_range, up=up, camera=camera, width=width,
+                           height=height, materials=materials, background=background, lighting=lighting, backdrop=backdrop)
         running = Render(scene, **options)
     except KeyboardInterrupt:
         raise Interrupted(None) from None

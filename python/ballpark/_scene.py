@@ -18,6 +18,7 @@ from . import _library as lib
 from ._arguments import Array, c_text, floats, warn, whole_number, wrong_type
 from ._colors import Color, linear_colors
 from ._interrupt import interruptible
+from ._lines import Lines
 from ._mesh import CLAY, Mesh, rows
 
 Document = typing.Mapping[str, typing.Any]
@@ -156,23 +157,24 @@ class Camera:
                 for name, value in dataclasses.asdict(self).items()}
 
 
-Shape = typing.Union[Spheres, Mesh]
+Shape = typing.Union[Spheres, Mesh, Lines]
+SHAPES = (Spheres, Mesh, Lines)
 
 
 def list_of_shapes(shapes: typing.Any) -> typing.List[Shape]:
-    """One Spheres or Mesh, or several."""
-    if isinstance(shapes, (Spheres, Mesh)):
+    """One Spheres, Mesh or Lines, or several."""
+    if isinstance(shapes, SHAPES):
         return [shapes]
     if not isinstance(shapes, (list, tuple)):
-        raise wrong_type("spheres", shapes, "Spheres, a Mesh or a list of them")
+        raise wrong_type("spheres", shapes, "Spheres, a Mesh, Lines or a list of them")
     for number, one in enumerate(shapes):
-        if not isinstance(one, (Spheres, Mesh)):
-            raise wrong_type(f"spheres[{number}]", one, "Spheres or a Mesh")
+        if not isinstance(one, SHAPES):
+            raise wrong_type(f"spheres[{number}]", one, "Spheres, a Mesh or Lines")
     return list(shapes)
 
 
 class Scene:
-    """A scene: a document of the JSON grammar (scenes/README.md) as a dict, and more spheres and meshes as arrays.
+    """A scene: a document of the JSON grammar (scenes/README.md) as a dict, and more spheres, meshes and lines as arrays.
 
     Relative files that the document names are looked up in the current folder. Raises SceneError, which names the
     member at fault.
@@ -184,12 +186,13 @@ class Scene:
         keep: typing.List[typing.Any] = []
         sets = [one._set(name, keep) for one, name in zip(shapes, names) if isinstance(one, Spheres)]
         meshes = [one._set(name, keep) for one, name in zip(shapes, names) if isinstance(one, Mesh)]
-        set_array, mesh_array = (lib.BpSphereSet * max(1, len(sets)))(*sets), (lib.BpMeshSet * max(1, len(meshes)))(*meshes)
+        lines = [one._set(name, keep) for one, name in zip(shapes, names) if isinstance(one, Lines)]
+        every = lib.BpShapeSets((lib.BpSphereSet * len(sets))(*sets), len(sets), (lib.BpMeshSet * len(meshes))(*meshes), len(meshes),
+                                (lib.BpLineSet * len(lines))(*lines), len(lines))
         self._handle = lib.Handle("scene")
 
         def parse() -> None:
-            lib.call("bp_scene_parse_with_shapes", text, len(text), b"scene", set_array, len(sets), mesh_array, len(meshes),
-                     self._handle.address, hide_place=True)
+            lib.call("bp_scene_parse_with_shapes", text, len(text), b"scene", c.byref(every), self._handle.address, hide_place=True)
             keep.clear()
 
         interruptible(parse)
@@ -248,7 +251,7 @@ class Scene:
 
     def __repr__(self) -> str:
         title = f" {self.title!r}" if self.title else ""
-        return f"<ballpark.Scene{title}: {self.spheres:,} spheres, {self.triangles:,} triangles, {self.width} x {self.height} pixels>"
+        return f"<ballpark.Scene{title}: {self.spheres:,} spheres, {self.triangles:,} triangles, {self.capsules:,} capsules, {self.width} x {self.height} pixels>"
 
 
 def _triple(vector: typing.Any) -> typing.Tuple[float, float, float]:
@@ -258,7 +261,7 @@ def _triple(vector: typing.Any) -> typing.Tuple[float, float, float]:
 def shape_document(shapes: typing.Sequence[Shape], camera: typing.Optional[Document], width: typing.Optional[int],
                       height: typing.Optional[int], members: Document) -> typing.Dict[str, typing.Any]:
     """The document for bare shapes: a fitted camera, unless `camera` says where it stands, and light, unless `members` has a
-    background: soft for spheres; where there is a mesh, that of a studio, with a shadow on the ground."""
+    background: soft for spheres and lines; where there is a mesh, that of a studio, with a shadow on the ground."""
     if camera is not None and not isinstance(camera, typing.Mapping):
         raise wrong_type("camera", camera, 'a dict such as {"vfov": 30}')
     own = dict(camera or {})

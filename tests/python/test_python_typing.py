@@ -18,7 +18,7 @@ assert (source / "python/ballpark/py.typed").exists()
 guide = (source / "docs/PYTHON.md").read_text(encoding="utf-8")
 for name in ballpark.__all__:
     assert inspect.getdoc(getattr(ballpark, name)), f"{name} has no documentation"
-for name in ("render", "make_scene", "Spheres", "Render", "Interrupted", "from_ase", "from_gsd", "from_mdanalysis", "devices",
+for name in ("render", "make_scene", "Spheres", "Mesh", "Lines", "Render", "Interrupted", "from_ase", "from_gsd", "from_mdanalysis", "devices",
              "SceneError", "DeviceError"):
     assert name in guide, f"docs/PYTHON.md does not speak of {name}"
 

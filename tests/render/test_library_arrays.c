@@ -201,7 +201,8 @@ static BpMeshSet make_mesh(void) {
 }
 
 static BpStatus parse_mesh(const BpMeshSet *mesh, BpScene **scene) {
-    return bp_scene_parse_with_shapes(ground, strlen(ground), "document", NULL, 0, mesh, 1, scene, &err);
+    const BpShapeSets shapes = {.meshes = mesh, .mesh_set_count = 1};
+    return bp_scene_parse_with_shapes(ground, strlen(ground), "document", &shapes, scene, &err);
 }
 
 /* A square is the quad of the document; the columns of another array, and a colour that is the material's,
@@ -265,6 +266,165 @@ static void test_mesh_refused(void **state) {
     mesh = make_mesh();
     mesh.triangle_count = SIZE_MAX;
     assert_mesh_refused(&mesh, BP_ERR_SCENE, "expected fewer");
+}
+
+/* ---- lines ---- */
+
+static const double joints[3][3] = {{-1, -0.25, 0}, {0, 0.5, 0.25}, {0.75, -0.25, 0}},
+                    widths[2] = {0.25, 0.125};
+static const uint32_t joined[2][2] = {{0, 1}, {2, 1}};
+
+static BpLineSet make_lines(void) {
+    return (BpLineSet){.point_count = 3,
+                       .line_count = 2,
+                       .point = {joints, sizeof joints[0], sizeof(double), BP_NUMBER_DOUBLE},
+                       .line = &joined[0][0],
+                       .radius = {widths, sizeof(double), 0, BP_NUMBER_DOUBLE},
+                       .material = "blue",
+                       .name = "sticks"};
+}
+
+static BpStatus parse_lines(const char *document, const BpLineSet *lines, BpScene **scene) {
+    const BpShapeSets shapes = {.lines = lines, .line_set_count = 1};
+    return bp_scene_parse_with_shapes(document, strlen(document), "document", &shapes, scene, &err);
+}
+
+#define STICKS(MEMBERS)                                                                                      \
+    "{ " HEAD ", \"spheres\": [ { \"center\": [0, -100.5, 0], \"radius\": 100, \"material\": \"blue\" } ],"  \
+    "\"capsules\": [ { \"ends\": [[-1, -0.25, 0], [0, 0.5, 0.25]], \"radius\": 0.25, \"material\": "         \
+    "\"blue\"" MEMBERS                                                                                       \
+    " }, { \"ends\": [[0.75, -0.25, 0], [0, 0.5, 0.25]], \"radius\": 0.125, \"material\": "                  \
+    "\"blue\"" MEMBERS " } ] }"
+
+/* By numbers of points, as pairs of points, from the columns of another array: the capsules of the document.
+ */
+static void test_lines(void **state) {
+    (void)state;
+    static const double pairs[4][3] = {{-1, -0.25, 0}, {0, 0.5, 0.25}, {0.75, -0.25, 0}, {0, 0.5, 0.25}};
+    static const float columns[3][4] = {
+        {-1, 0, 0.75f, 0}, {-0.25f, 0.5f, -0.25f, 0.5f}, {0, 0.25f, 0, 0.25f}};
+    static const char sticks[] = STICKS("");
+    BpScene *scene = NULL;
+    BpLineSet lines = make_lines();
+    must(parse_lines(ground, &lines, &scene));
+    BpSceneInfo info;
+    bp_scene_info(scene, &info);
+    assert_int_equal(info.capsules, 2);
+    assert_int_equal(info.spheres, 1);
+    assert_same(parse(sticks, NULL, 0), scene);
+    lines.line = NULL;
+    lines.point_count = 4;
+    lines.point.data = pairs;
+    must(parse_lines(ground, &lines, &scene));
+    assert_same(parse(sticks, NULL, 0), scene);
+    lines.point = (BpRows){columns, sizeof(float), sizeof columns[0], BP_NUMBER_FLOAT};
+    must(parse_lines(ground, &lines, &scene));
+    assert_same(parse(sticks, NULL, 0), scene);
+}
+
+/* The colours of a document's capsules, of each end its own; glass has none, so one for it changes nothing.
+ */
+static void test_colors_of_lines(void **state) {
+    (void)state;
+    static const float first[2][3] = {{0.875f, 0.125f, 0.0625f}, {0.875f, 0.125f, 0.0625f}},
+                       second[3] = {0.25f, 0.75f, 0.5f};
+    static const char sticks[] = STICKS(", \"colors\": [[0.875, 0.125, 0.0625], [0.25, 0.75, 0.5]]");
+    BpScene *scene = NULL, *plain = NULL;
+    BpLineSet lines = make_lines();
+    lines.color[0] = (BpRows){first, sizeof first[0], sizeof(float), BP_NUMBER_FLOAT};
+    lines.color[1] = (BpRows){second, 0, sizeof(float), BP_NUMBER_FLOAT};
+    must(parse_lines(ground, &lines, &scene));
+    assert_same(parse(sticks, NULL, 0), scene);
+    lines.material = "glass";
+    must(parse_lines(ground, &lines, &scene));
+    lines.color[0].data = lines.color[1].data = NULL;
+    must(parse_lines(ground, &lines, &plain));
+    assert_same(plain, scene);
+}
+
+/* A camera is fitted to all of both ends, with their radii; those in one plane are seen from the front. */
+static void test_fit_of_lines(void **state) {
+    (void)state;
+    static const double balls[4][3] = {{-1, 0, 0}, {3, 0, 0}, {-1, 0, 2}, {3, 0, 2}}, half = 0.5;
+    BpLineSet lines = {.point_count = 4,
+                       .line_count = 2,
+                       .point = {balls, sizeof balls[0], sizeof(double), BP_NUMBER_DOUBLE},
+                       .radius = {&half, 0, 0, BP_NUMBER_DOUBLE}};
+    const BpSphereSet ends = {
+        .count = 4, .center = lines.point, .radius = {&half, 0, 0, BP_NUMBER_DOUBLE}, .name = "balls"};
+    BpScene *scene = NULL, *other = parse(fitted, &ends, 1);
+    BpCameraInfo camera, expected;
+    must(parse_lines(fitted, &lines, &scene));
+    bp_scene_camera(scene, &camera);
+    bp_scene_camera(other, &expected);
+    for (int a = 0; a < 3; a++) {
+        assert_true(fabs(camera.lookfrom[a] - expected.lookfrom[a]) < 1e-9);
+        assert_true(fabs(camera.lookat[a] - expected.lookat[a]) < 1e-9);
+    }
+    assert_true(fabs(camera.lookfrom[0] - camera.lookat[0]) > 0.1);
+    bp_scene_destroy(&scene);
+    bp_scene_destroy(&other);
+    lines.line_count = 1;
+    lines.point_count = 2;
+    must(parse_lines(fitted, &lines, &scene));
+    bp_scene_camera(scene, &camera);
+    assert_true(fabs(camera.lookfrom[0] - camera.lookat[0]) < 1e-9);
+    assert_true(fabs(camera.lookfrom[1] - camera.lookat[1]) < 1e-9);
+    bp_scene_destroy(&scene);
+}
+
+static void assert_lines_refused(const BpLineSet *lines, BpStatus status, const char *words) {
+    BpScene *scene = NULL;
+    assert_int_equal(parse_lines(ground, lines, &scene), status);
+    assert_null(scene);
+    if (strstr(err.message, words) == NULL) fail_msg("\"%s\" lacks \"%s\"", err.message, words);
+}
+
+static void test_lines_refused(void **state) {
+    (void)state;
+    static const uint32_t beyond[2][2] = {{0, 1}, {1, 3}};
+    static const double infinite[3][3] = {{-1, -0.25, 0}, {0, 0.5, 0.25}, {0.75, INFINITY, 0}},
+                        bad_widths[3][2] = {{0.25, 0}, {0.25, -1}, {0.25, NAN}};
+    static const float bright[3] = {0, 0, 1.5f};
+    BpLineSet lines = make_lines();
+    lines.line = &beyond[0][0];
+    assert_lines_refused(&lines, BP_ERR_SCENE, "line 1 (from 0) of sticks: found point 3, expected one of 3");
+    lines = make_lines();
+    lines.point.data = infinite;
+    assert_lines_refused(&lines, BP_ERR_SCENE, "line 1 (from 0) of sticks: ends: found inf");
+    for (int i = 0; i < 3; i++) {
+        lines = make_lines();
+        lines.radius.data = bad_widths[i];
+        assert_lines_refused(&lines, BP_ERR_SCENE, "line 1 (from 0) of sticks: radius: found ");
+    }
+    lines = make_lines();
+    lines.color[0] = lines.color[1] = (BpRows){bright, 0, sizeof(float), BP_NUMBER_FLOAT};
+    assert_lines_refused(&lines, BP_ERR_SCENE, "line 0 (from 0) of sticks: color: found 1.5");
+    lines.color[1].data = NULL;
+    assert_lines_refused(&lines, BP_ERR_USAGE, "sticks: found no numbers for the colours of both ends");
+    lines = make_lines();
+    lines.material = "glas";
+    assert_lines_refused(&lines, BP_ERR_SCENE, "sticks: ");
+    assert_lines_refused(&lines, BP_ERR_SCENE, "did you mean \"glass\"?");
+    lines.material = "glass"; /* two of glass in one place */
+    lines.point_count = 1;
+    lines.point.row_stride = lines.radius.row_stride = 0;
+    static const uint32_t again[2][2] = {{0, 0}, {0, 0}};
+    lines.line = &again[0][0];
+    assert_lines_refused(&lines, BP_ERR_SCENE,
+                         "line 1 (from 0) of sticks: found the surface of line 0 (from 0) of sticks");
+    lines = make_lines();
+    lines.line = NULL;
+    assert_lines_refused(&lines, BP_ERR_USAGE, "sticks: found 3 points for 2 lines, expected two for each");
+    lines = make_lines();
+    lines.radius.data = NULL;
+    assert_lines_refused(&lines, BP_ERR_USAGE, "sticks: found no numbers for radii");
+    lines = make_lines();
+    lines.point.type = (BpNumberType)7;
+    assert_lines_refused(&lines, BP_ERR_USAGE, "sticks: found no numbers for points");
+    lines = make_lines();
+    lines.line_count = SIZE_MAX;
+    assert_lines_refused(&lines, BP_ERR_SCENE, "expected fewer");
 }
 
 static void test_picture_in_memory(void **state) {
@@ -343,6 +503,10 @@ int main(void) {
         cmocka_unit_test(test_refused),
         cmocka_unit_test(test_mesh),
         cmocka_unit_test(test_mesh_refused),
+        cmocka_unit_test(test_lines),
+        cmocka_unit_test(test_colors_of_lines),
+        cmocka_unit_test(test_fit_of_lines),
+        cmocka_unit_test(test_lines_refused),
         cmocka_unit_test(test_picture_in_memory),
         cmocka_unit_test(test_looks),
     };
