@@ -170,6 +170,11 @@ typedef enum BpTransfer { BP_TRANSFER_GAMMA2, BP_TRANSFER_SRGB, BP_TRANSFER_LINE
  * which becomes a scene with everything chosen by what it holds. BP_ERR_SCENE: the scene is invalid, or the
  * file cannot be opened; BP_ERR_FILE: reading failed. Errors name file:line:column. */
 BP_API BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err);
+/* The same, of the particles of all files only those for which `select` holds, an expression such as
+ * "chain == \"A\" and not hydrogen" (docs/PARTICLES.md). It is thread-safe as bp_scene_load() is.
+ * BP_ERR_SCENE: also an invalid expression, which the error's attachment shows with a mark below the place;
+ * one that holds for no particle; a scene without particles. */
+BP_API BpStatus bp_scene_load_selected(const char *path, const char *select, BpScene **scene, BpError *err);
 
 /* The same from `length` bytes of memory, which need not end with a zero byte; `name` stands in messages
  * where a path would, and relative files of the scene (clouds) are looked up beside it. */

@@ -38,7 +38,7 @@ BpStatus bp_particle_cache_open(const BpNode *file_node, const char *path, const
                                 size_t place, BpParticleCache *cache, BpParticleFile **file, BpError *err) {
     FILE *stream = NULL;
     uint64_t size = 0;
-    const char *columns[BP_PARTICLE_WANTED_MAX];
+    BpStyleColumns columns;
     if (place < cache->count) {
         *file = cache->entry[place].file;
         return BP_OK;
@@ -49,9 +49,10 @@ BpStatus bp_particle_cache_open(const BpNode *file_node, const char *path, const
     if (format == BP_PARTICLES_NONE) status = fail_format(file_node, path, stream, err);
     char *const copy = status == BP_OK ? strdup(path) : NULL; /* the file's reader keeps the name */
     if (status == BP_OK && copy == NULL) status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a path");
+    bp_particle_style_columns(style, &columns);
     if (status == BP_OK)
-        status = bp_particle_file_open(stream, copy, format, columns,
-                                       bp_particle_style_columns(style, columns), file, err);
+        status = bp_particle_file_open(stream, copy, format, columns.name, columns.count, columns.needed,
+                                       file, err);
     if (status != BP_OK) {
         free(copy);
         fclose(stream);

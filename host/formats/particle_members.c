@@ -5,6 +5,8 @@
 #include "base/words.h"
 #include "scene/scene.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static BpStatus read_above_zero(const BpNode *node, double *value, BpError *err) {
@@ -29,6 +31,37 @@ static BpStatus read_column(const BpNode *node, char column[64], BpError *err) {
         return bp_node_wrong(node, "the name of a column, at most 63 letters", err);
     memcpy(column, text, strlen(text) + 1);
     return BP_OK;
+}
+
+/* An expression; `narrow` (Optional) is another condition that is to hold as well. The error keeps the
+ * drawing of the place. */
+static BpStatus read_expression(const BpNode *node, BpValueType wanted, const char *narrow,
+                                BpExpression **expression, BpError *err) {
+    const char *text = "";
+    char *both = NULL;
+    BpError fault = {0};
+    if (node->value == NULL && narrow == NULL) return BP_OK;
+    BP_TRY(bp_node_string(node, &text, err));
+    BpStatus status = BP_OK;
+    if (node->value != NULL) status = bp_select_parse(text, wanted, expression, &fault);
+    if (status == BP_OK && narrow != NULL && node->value != NULL) {
+        const size_t size = strlen(text) + strlen(narrow) + sizeof "() and ()";
+        both = malloc(size);
+        if (both == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for an expression");
+        snprintf(both, size, "(%s) and (%s)", text, narrow);
+        bp_expression_destroy(expression);
+    }
+    if (status == BP_OK && narrow != NULL)
+        status = bp_select_parse(both != NULL ? both : narrow, wanted, expression, &fault);
+    free(both);
+    if (status == BP_OK) return BP_OK;
+    if (status == BP_ERR_MEMORY)
+        bp_fail(err, status, "%s", fault.message);
+    else
+        bp_node_fail(node, BP_PART_VALUE, err, "%s", fault.message);
+    bp_error_attach(err, fault.attachment);
+    bp_error_clear(&fault);
+    return status;
 }
 
 /* { "C": ..., "O": ... }: radii (numbers) or colours. */
@@ -97,8 +130,17 @@ static BpStatus read_by(const BpNode *node, const char *const *words, size_t cou
     return bp_node_wrong(node, text, err);
 }
 
+/* Only one of them says what the numbers are. */
+static BpStatus check_alone(const BpNode *by, const BpNode *column, const BpNode *value, BpError *err) {
+    const BpNode *const first = by->value != NULL ? by : column;
+    const BpNode *const second = column->value != NULL && first != column ? column : value;
+    if (first->value == NULL || second->value == NULL) return BP_OK;
+    return bp_node_fail(second, BP_PART_NAME, err, "found beside \"%s\", expected one of the two; remove one",
+                        first->member);
+}
+
 static BpStatus read_radius(const BpNode *node, BpParticleStyle *style, BpError *err) {
-    static const char *const names[] = {"by", "column", "scale", "types"};
+    static const char *const names[] = {"by", "column", "value", "scale", "types"};
     static const char object[] = "an object such as { \"by\": \"vdw\", \"scale\": 0.5 }, "
                                  "{ \"column\": \"mass\", \"scale\": 0.1 } or { \"types\": { \"A\": 0.5 } }";
     char expected[EXPECTED_SIZE];
@@ -120,9 +162,8 @@ static BpStatus read_radius(const BpNode *node, BpParticleStyle *style, BpError 
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
     const BpNode by = bp_node_member(node, "by"), column = bp_node_member(node, "column");
     const BpNode scale = bp_node_member(node, "scale"), types = bp_node_member(node, "types");
-    if (by.value != NULL && column.value != NULL)
-        return bp_node_fail(&column, BP_PART_NAME, err,
-                            "found beside \"by\", expected one of the two; remove one");
+    const BpNode value = bp_node_member(node, "value");
+    BP_TRY(check_alone(&by, &column, &value, err));
     if (by.value != NULL) {
         BP_TRY(bp_node_choice(&by, radius_words, BP_COUNT(radius_words), &choice, err));
         style->radius_by = radius_values[choice];
@@ -130,6 +171,10 @@ static BpStatus read_radius(const BpNode *node, BpParticleStyle *style, BpError 
     if (column.value != NULL) {
         style->radius_by = BP_RADIUS_COLUMN;
         BP_TRY(read_column(&column, style->radius_column, err));
+    }
+    if (value.value != NULL) {
+        style->radius_by = BP_RADIUS_COLUMN;
+        BP_TRY(read_expression(&value, BP_VALUE_NUMBER, NULL, &style->radius_value, err));
     }
     BP_TRY(read_above_zero(&scale, &style->radius, err));
     return read_named(&types, false, style->radii, &style->radius_count, err);
@@ -148,7 +193,7 @@ static BpStatus read_range(const BpNode *node, BpParticleStyle *style, BpError *
 }
 
 static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError *err) {
-    static const char *const names[] = {"by", "column", "map", "range", "bar", "types"};
+    static const char *const names[] = {"by", "column", "value", "map", "range", "bar", "types"};
     static const char object[] =
         "an object such as { \"column\": \"charge\", \"map\": \"viridis\", \"range\": [-1, 1] } or "
         "{ \"types\": { \"A\": [0.5, 0.1, 0.1] } }";
@@ -172,15 +217,16 @@ static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError 
     const BpNode by = bp_node_member(node, "by"), column = bp_node_member(node, "column");
     const BpNode map = bp_node_member(node, "map"), range = bp_node_member(node, "range");
     const BpNode bar = bp_node_member(node, "bar"), types = bp_node_member(node, "types");
-    if (by.value != NULL && column.value != NULL)
-        return bp_node_fail(&column, BP_PART_NAME, err,
-                            "found beside \"by\", expected one of the two; remove one");
-    if (column.value == NULL && (map.value != NULL || range.value != NULL || bar.value != NULL))
-        return bp_node_fail(map.value != NULL     ? &map
-                            : range.value != NULL ? &range
-                                                  : &bar,
-                            BP_PART_NAME, err,
-                            "found without \"column\", expected the column whose numbers give the colours");
+    const BpNode value = bp_node_member(node, "value");
+    BP_TRY(check_alone(&by, &column, &value, err));
+    if (column.value == NULL && value.value == NULL &&
+        (map.value != NULL || range.value != NULL || bar.value != NULL))
+        return bp_node_fail(
+            map.value != NULL     ? &map
+            : range.value != NULL ? &range
+                                  : &bar,
+            BP_PART_NAME, err,
+            "found without \"column\" or \"value\", expected one of them, whose numbers give the colours");
     if (by.value != NULL) {
         BP_TRY(bp_node_choice(&by, color_words, BP_COUNT(color_words), &choice, err));
         style->color_by = color_values[choice];
@@ -188,6 +234,11 @@ static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError 
     if (column.value != NULL) {
         style->color_by = BP_COLOR_COLUMN;
         BP_TRY(read_column(&column, style->color_column, err));
+    }
+    if (value.value != NULL) {
+        style->color_by = BP_COLOR_COLUMN;
+        BP_TRY(read_expression(&value, BP_VALUE_NUMBER, NULL, &style->color_value, err));
+        bp_printable(bp_expression_text(style->color_value), style->color_column, sizeof style->color_column);
     }
     choice = BP_MAP_VIRIDIS;
     BP_TRY(bp_node_choice(&map, bp_colormap_names, BP_MAP_COUNT, &choice, err));
@@ -213,13 +264,19 @@ static BpStatus read_bonds(const BpNode *node, BpParticleStyle *style, BpError *
 #define STYLE_WORDS(X) X(BP_STYLE_SPACEFILL, "spacefill") X(BP_STYLE_BALL_AND_STICK, "ball-and-stick")
 BP_WORDS(BpStyleKind, static const char *const style_names, STYLE_WORDS);
 
-BpStatus bp_parse_particle_style(const BpNode *node, BpParticleStyle *style, BpError *err) {
+BpStatus bp_parse_particle_style(const BpNode *node, const char *narrow, BpParticleStyle *style,
+                                 BpError *err) {
     const BpNode kind = bp_node_member(node, "style"), radius = bp_node_member(node, "radius");
     const BpNode color = bp_node_member(node, "color"), bonds = bp_node_member(node, "bonds");
     const BpNode box = bp_node_member(node, "box"), solvent = bp_node_member(node, "solvent");
-    const BpNode whole = bp_node_member(node, "whole");
+    const BpNode whole = bp_node_member(node, "whole"), select = bp_node_member(node, "select");
     int choice = 0;
     bp_particle_style_defaults(style);
+    BP_TRY(read_expression(&select, BP_VALUE_TRUTH, narrow, &style->select, err));
+    if (style->select != NULL && solvent.value != NULL)
+        return bp_node_fail(
+            &solvent, BP_PART_NAME, err,
+            "found beside \"select\", which decides that: write \"... and not solvent\" in it");
     BP_TRY(bp_node_choice(&kind, style_names, BP_COUNT(style_names), &choice, err));
     style->kind = (BpStyleKind)choice;
     BP_TRY(read_radius(&radius, style, err));

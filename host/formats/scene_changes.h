@@ -19,6 +19,8 @@ typedef struct BpSceneChanges {
     BpHeldFiles *held; /* Optional: as of a document */
     bool has_frame;
     int64_t frame;          /* of every file of particles that has frames */
+    const char *select;     /* Optional: a condition for all particles, beside those of the document */
+    const char *select_by;  /* what messages call it, such as "--select" */
     bool fit;               /* a camera fitted to the particles, or to the scene where there are none */
     uint32_t turning;       /* the fitted camera is for a turntable of so many pictures */
     const BpCamera *camera; /* Optional: takes its place, direction and focus instead of fitting */

@@ -91,6 +91,14 @@ BpStatus bp_scene_load_changed(const char *path, const BpSceneChanges *changes, 
     return status;
 }
 
+BpStatus bp_scene_load_selected(const char *path, const char *select, BpScene **scene, BpError *err) {
+    const BpSceneChanges changes = {.select = select, .select_by = "select"};
+    BP_TRY(bp_scene_load_changed(path, &changes, scene, err));
+    if ((*scene)->has_particles) return BP_OK;
+    bp_scene_destroy(scene);
+    return bp_fail(err, BP_ERR_SCENE, "select: %.400s has no particles to select from", path);
+}
+
 BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err) {
     const BpSceneChanges none = {0};
     return bp_scene_load_changed(path, &none, scene, err);

@@ -82,8 +82,8 @@ static BpStatus read_file(const BpNode *file_node, const Entry *entry, size_t pl
 
 static BpStatus parse_entry(const BpNode *node, size_t place, const BpMaterialIndex *index,
                             const BpSceneChanges *changes, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"file",  "frame", "style",   "radius", "color",
-                                        "bonds", "box",   "solvent", "whole",  "material"};
+    static const char *const names[] = {"file", "frame",   "style", "radius",   "color", "bonds",
+                                        "box",  "solvent", "whole", "material", "select"};
     if (!json_is_object(node->value))
         return bp_node_wrong(node, "an object: { \"file\": \"run.gsd\", ... }", err);
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
@@ -101,7 +101,7 @@ static BpStatus parse_entry(const BpNode *node, size_t place, const BpMaterialIn
         goto done;
     }
     entry->frame = changes->has_frame ? changes->frame : (int64_t)number;
-    BP_TRY_GOTO(status, bp_parse_particle_style(node, &entry->style, err), done);
+    BP_TRY_GOTO(status, bp_parse_particle_style(node, changes->select, &entry->style, err), done);
     if (changes->has_range && entry->style.color_by == BP_COLOR_COLUMN && !entry->style.has_range) {
         entry->style.has_range = true;
         memcpy(entry->style.range, changes->range, sizeof entry->style.range);
@@ -119,6 +119,9 @@ static BpStatus parse_entry(const BpNode *node, size_t place, const BpMaterialIn
     bool whole = copy != NULL && json_object_size(copy) == json_object_size(node->value);
     if (whole && changes->has_frame)
         whole = json_object_set_new(copy, "frame", json_integer(changes->frame)) == 0;
+    if (whole && changes->select != NULL)
+        whole =
+            json_object_set_new(copy, "select", json_string(bp_expression_text(entry->style.select))) == 0;
     entry->text = whole ? json_dumps(copy, JSON_PRESERVE_ORDER) : NULL;
     json_decref(copy);
     if (entry->text == NULL) {
@@ -128,14 +131,30 @@ static BpStatus parse_entry(const BpNode *node, size_t place, const BpMaterialIn
     if ((changes->flags & BP_PARSE_NO_CLOUDS) == 0)
         status = read_file(&file, entry, place, changes, scene, err);
 done:
+    bp_particle_style_clear(&entry->style);
     free(entry->text);
     free(entry);
+    return status;
+}
+
+/* What narrows all selections is wrong where it comes from, not in an entry. */
+static BpStatus check_select(const BpSceneChanges *changes, BpError *err) {
+    BpExpression *expression = NULL;
+    BpError fault = {0};
+    if (changes->select == NULL) return BP_OK;
+    const BpStatus status = bp_select_parse(changes->select, BP_VALUE_TRUTH, &expression, &fault);
+    bp_expression_destroy(&expression);
+    if (status == BP_OK) return BP_OK;
+    bp_fail(err, status, "%s: %s", changes->select_by, fault.message);
+    bp_error_attach(err, fault.attachment);
+    bp_error_clear(&fault);
     return status;
 }
 
 BpStatus bp_parse_particles(const BpNode *node, const BpMaterialIndex *index, const BpSceneChanges *changes,
                             BpScene *scene, BpError *err) {
     scene->particle_first = scene->sphere_count;
+    BP_TRY(check_select(changes, err));
     BP_TRY(bp_node_list(node, "a list of files: [ { \"file\": \"run.gsd\", ... } ]", err));
     scene->has_particles = json_array_size(node->value) > 0;
     for (size_t i = 0; i < json_array_size(node->value); i++) {

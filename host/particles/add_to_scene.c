@@ -20,13 +20,15 @@
 static void find_flat(BpStyleJob *job) {
     BpParticles *const p = job->p;
     double low = INFINITY, high = -INFINITY;
+    size_t count = 0;
     for (size_t i = 0; i < p->count; i++) {
-        if (!job->shown[i]) continue;
+        if (!job->usual[i]) continue;
+        count++;
         low = p->position[i][2] < low ? p->position[i][2] : low;
         high = p->position[i][2] > high ? p->position[i][2] : high;
         if (high > low) break;
     }
-    p->flat |= job->shown_count > 2 && high == low;
+    p->flat |= count > 2 && high == low;
 }
 
 /* Names that no particle that is shown has; a frame may lack types of another, so they are no error. */
@@ -49,12 +51,12 @@ static BpStatus run(BpStyleJob *job, BpError *err) {
     if (p->notes[0] != '\0') bp_style_say(job, "%s", p->notes);
     const bool bonds = job->style->bonds || job->style->kind == BP_STYLE_BALL_AND_STICK;
     const bool whole = job->style->whole && bp_particles_repeat(p) && (p->bond_count > 0 || p->has_element);
-    if (bonds || whole) BP_TRY(bp_bonds_find(p, job->shown, &job->bonds, err));
+    if (bonds || whole) BP_TRY(bp_bonds_find(p, job->base, &job->bonds, err));
     if (job->bonds.crowded)
         bp_style_say(job,
                      "no bonds by distance, since atoms lie in each other; is their unit of length right?");
     size_t moved = 0;
-    if (whole) BP_TRY(bp_molecules_make_whole(p, job->shown, &job->bonds, &moved, err));
+    if (whole) BP_TRY(bp_molecules_make_whole(p, job->base, &job->bonds, &moved, err));
     if (moved > 0)
         bp_style_say(job, "molecules made whole across the cell: %s moved",
                      bp_format_whole(moved, all, sizeof all));
@@ -71,7 +73,11 @@ static BpStatus run(BpStyleJob *job, BpError *err) {
         snprintf(rest, sizeof rest, "%s", job->summary);
         bp_format_whole(p->count, all, sizeof all);
         bp_format_whole(job->shown_count, shown, sizeof shown);
-        if (job->shown_count == p->count)
+        if (job->style->select != NULL)
+            snprintf(job->summary, job->size, "selected %s of %s particle%s%s%s",
+                     bp_format_whole(job->selected_count, shown, sizeof shown), all, bp_plural(p->count),
+                     rest[0] != '\0' ? "; " : "", rest);
+        else if (job->shown_count == p->count)
             snprintf(job->summary, job->size, "%s particle%s%s%s", all, bp_plural(p->count),
                      rest[0] != '\0' ? "; " : "", rest);
         else
@@ -91,10 +97,15 @@ BpStatus bp_particles_add_to_scene(BpParticles *particles, const BpParticleStyle
                       .summary = summary,
                       .size = size};
     if (summary != NULL) summary[0] = '\0';
+    bp_particle_style_columns(style, &job.columns);
     bp_linear_of_bytes(job.linear);
     const BpStatus status = run(&job, err);
     if (range != NULL) memcpy(range, job.range, sizeof job.range);
-    free(job.shown);
+    if (job.shown != job.usual) free(job.shown);
+    if (job.base != job.usual) free(job.base);
+    free(job.usual);
+    free(job.radius_numbers);
+    free(job.color_numbers);
     free(job.rank);
     free(job.bonds.bond);
     return status;

@@ -11,9 +11,9 @@
 #include "style.h"
 
 /* Adds the particles as spheres of `material`, each with a colour of its own, and bonds and cell where the
- * style has them. Moves molecules in `particles` together. `summary` (Optional, of `size` bytes): what is
- * shown, and every guess. `range`: Optional; the values at the ends of the colormap. Fails if nothing is left
- * to show. */
+ * style has them; the frame was read with the columns of the style. Moves molecules in `particles` together.
+ * `summary` (Optional, of `size` bytes): what is shown, and every guess. `range`: Optional; the values at the
+ * ends of the colormap. Fails if nothing is left to show. */
 BpStatus bp_particles_add_to_scene(BpParticles *particles, const BpParticleStyle *style, uint32_t material,
                                    BpScene *scene, char *summary, size_t size, double range[2], BpError *err);
 

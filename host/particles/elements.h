@@ -36,7 +36,10 @@ uint8_t bp_element_of_mass(double mass, bool *united);
 /* Residues that are water, and those that are single ions of the water around a molecule. */
 bool bp_residue_is_water(const char *residue);
 bool bp_residue_is_ion(const char *residue);
-/* Those, and the residues of proteins and nucleic acids. */
+/* Those that molecular dynamics and the Protein Data Bank call so, with the names of MDAnalysis. */
+bool bp_residue_is_protein(const char *residue);
+bool bp_residue_is_nucleic(const char *residue);
+/* Water, ions, and the residues of proteins and nucleic acids, where names of atoms are known. */
 bool bp_residue_is_common(const char *residue);
 
 #endif

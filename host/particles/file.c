@@ -107,12 +107,13 @@ BpParticleFormat bp_particle_format_find(const char *name, FILE *stream) {
 }
 
 BpStatus bp_particle_file_open(FILE *stream, const char *name, BpParticleFormat format,
-                               const char *const *wanted, size_t wanted_count, BpParticleFile **file,
-                               BpError *err) {
+                               const char *const *wanted, size_t wanted_count, size_t needed,
+                               BpParticleFile **file, BpError *err) {
     BpParticleFile *result = calloc(1, sizeof *result);
     *file = NULL;
     if (result == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a file of particles");
     result->format = format;
+    result->needed = needed;
     for (size_t i = 0; i < wanted_count && i < BP_PARTICLE_WANTED_MAX; i++)
         snprintf(result->wanted[result->wanted_count++], sizeof result->wanted[0], "%s", wanted[i]);
     const BpStatus status = input_init(&result->input, stream, name, err);

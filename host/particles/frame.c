@@ -27,6 +27,9 @@ static void free_arrays(BpParticles *p) {
     free(p->radius);
     free(p->color);
     for (int i = 0; i < BP_PARTICLE_WANTED_MAX; i++) free(p->column[i]);
+    for (size_t c = 0; c < p->column_count; c++) free(p->column_names[c]);
+    free(p->column_names);
+    free(p->gone);
     free(p->bonds);
     names_clear(&p->names);
 }
@@ -43,37 +46,57 @@ void bp_particles_note(BpParticles *particles, const char *format, ...) {
     va_end(arguments);
 }
 
+/* Where a wanted column is; below 0: nowhere, if it need not be there. */
+static BpStatus find_column(const BpParticleFile *file, const char *const *columns, size_t column_count,
+                            size_t wanted, int *place, BpError *err) {
+    char list[384] = "", shown[64];
+    bp_printable(file->wanted[wanted], shown, sizeof shown);
+    for (size_t c = 0; c < column_count; c++) {
+        if (strcmp(file->wanted[wanted], columns[c]) != 0) continue;
+        if (*place >= 0)
+            return input_fail(&file->input, false, err, "found two columns \"%s\", expected one", shown);
+        *place = (int)c;
+    }
+    if (*place >= 0 || wanted >= file->needed) return BP_OK;
+    for (size_t c = 0; c < column_count; c++) {
+        const size_t used = strlen(list);
+        bp_printable(columns[c], shown, sizeof shown);
+        snprintf(list + used, sizeof list - used, "%s%s", c > 0 ? ", " : "", shown);
+    }
+    bp_printable(file->wanted[wanted], shown, sizeof shown);
+    return input_fail(&file->input, false, err, "found no column \"%s\", expected one of %s", shown,
+                      column_count > 0 ? list : "none: this file has no columns of numbers");
+}
+
+static BpStatus keep_names(BpParticles *p, const char *const *columns, size_t count, BpError *err) {
+    p->column_names = calloc(count + 1, sizeof *p->column_names);
+    while (p->column_names != NULL && p->column_count < count) {
+        char *const copy = strdup(columns[p->column_count]);
+        if (copy == NULL) break;
+        p->column_names[p->column_count++] = copy;
+    }
+    return p->column_count == count && p->column_names != NULL
+               ? BP_OK
+               : bp_fail(err, BP_ERR_MEMORY, "out of memory for the names of columns");
+}
+
 BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t column_count, BpError *err) {
     file->added = 0;
     file->gone_count = 0;
     file->colors = (ColorRange){0};
     file->taken_count = 0;
     if (file->out == NULL) return BP_OK; /* a frame that is passed over may lack the columns */
-    file->taken_count = file->wanted_count;
     for (size_t w = 0; w < file->wanted_count; w++) {
-        file->wanted_column[w] = -1;
-        char list[384] = "", shown[64];
-        for (size_t c = 0; c < column_count; c++) {
-            if (strcmp(file->wanted[w], columns[c]) != 0) continue;
-            if (file->wanted_column[w] >= 0) {
-                bp_printable(file->wanted[w], shown, sizeof shown);
-                return input_fail(&file->input, false, err, "found two columns \"%s\", expected one", shown);
-            }
-            file->wanted_column[w] = (int)c;
-        }
-        if (file->wanted_column[w] >= 0) continue;
-        for (size_t c = 0; c < column_count; c++) {
-            const size_t used = strlen(list);
-            bp_printable(columns[c], shown, sizeof shown);
-            snprintf(list + used, sizeof list - used, "%s%s", c > 0 ? ", " : "", shown);
-        }
-        bp_printable(file->wanted[w], shown, sizeof shown);
-        return input_fail(&file->input, false, err, "found no column \"%s\", expected one of %s", shown,
-                          column_count > 0 ? list : "none: this file has no columns of numbers");
+        int place = -1;
+        BP_TRY(find_column(file, columns, column_count, w, &place, err));
+        if (place < 0) continue;
+        file->wanted_column[file->taken_count] = place;
+        file->wanted_place[file->taken_count++] = w;
     }
     BpParticles *const p = file->out;
     free_arrays(p);
     *p = (BpParticles){.up = 1};
+    if (file->wanted_count > file->needed) BP_TRY(keep_names(p, columns, column_count, err));
     const char *const unread = column_single_color(columns, column_count);
     bp_printable(unread != NULL ? unread : "", file->unread_color, sizeof file->unread_color);
     return BP_OK;
@@ -92,8 +115,8 @@ static bool grow(BpParticleFile *file, BpParticles *p) {
         resize(&p->position, capacity, sizeof *p->position) && resize(&p->tag, capacity, sizeof *p->tag);
     if (p->radius != NULL) good = good && resize(&p->radius, capacity, sizeof *p->radius);
     if (p->color != NULL) good = good && resize(&p->color, capacity, sizeof *p->color);
-    for (size_t w = 0; w < file->taken_count; w++)
-        good = good && resize(&p->column[w], capacity, sizeof *p->column[w]);
+    for (size_t k = 0; k < file->taken_count; k++)
+        good = good && resize(&p->column[file->wanted_place[k]], capacity, sizeof *p->column[0]);
     if (good) p->capacity = capacity;
     return good;
 }
@@ -191,10 +214,11 @@ BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_lin
     BP_TRY(add_radius(p, particle->radius, err));
     BP_TRY(add_color(p, particle->color, err));
     memcpy(p->position[p->count], particle->position, sizeof p->position[0]);
-    for (size_t w = 0; w < file->taken_count; w++) {
-        if (p->column[w] == NULL) p->column[w] = malloc(p->capacity * sizeof *p->column[w]);
-        if (p->column[w] == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a column");
-        p->column[w][p->count] = (float)particle->values[file->wanted_column[w]];
+    for (size_t k = 0; k < file->taken_count; k++) {
+        double **const column = &p->column[file->wanted_place[k]];
+        if (*column == NULL) *column = malloc(p->capacity * sizeof **column);
+        if (*column == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a column");
+        (*column)[p->count] = particle->values[file->wanted_column[k]];
     }
     p->count++;
     return BP_OK;
@@ -251,7 +275,13 @@ BpStatus frame_end(BpParticleFile *file, BpError *err) {
         bp_particles_note(p, "%s point%s without a place left out",
                           bp_format_whole(file->gone_count, number, sizeof number),
                           bp_plural(file->gone_count));
-    if (p->color == NULL && file->unread_color[0] != '\0' && file->wanted_count == 0)
+    if (file->gone_count > 0) {
+        p->gone = malloc(file->gone_count * sizeof *p->gone);
+        if (p->gone == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for points without a place");
+        memcpy(p->gone, file->gone, file->gone_count * sizeof *p->gone);
+        p->gone_count = file->gone_count;
+    }
+    if (p->color == NULL && file->unread_color[0] != '\0' && file->needed == 0)
         bp_particles_note(p, "no colours from \"%s\", since red, green and blue must be columns",
                           file->unread_color);
     if (p->color == NULL) return BP_OK;

@@ -35,7 +35,7 @@ const char *bp_particle_format_name(BpParticleFormat format);
 
 enum {
     BP_PARTICLE_COLUMNS_MAX = 128, /* numeric columns of a file */
-    BP_PARTICLE_WANTED_MAX = 2,    /* columns kept at a time */
+    BP_PARTICLE_WANTED_MAX = 56,   /* columns kept at a time */
     BP_PARTICLE_NAME_SIZE =
         1024, /* of the name of an atom, a residue, a chain, a type; longer ones are refused */
     BP_PARTICLE_NOTES_SIZE = 480
@@ -52,7 +52,8 @@ typedef struct BpNames {
 enum {
     BP_PARTICLE_ALTERNATIVE = 1, /* another place of an atom that is shown elsewhere */
     BP_PARTICLE_DUMMY = 2,       /* a site of a model, no atom */
-    BP_PARTICLE_ELEMENT_GUESSED = 4
+    BP_PARTICLE_ELEMENT_GUESSED = 4,
+    BP_PARTICLE_HETERO = 8 /* in a record HETATM */
 };
 
 /* Attributes of a particle for its style, beside its position. */
@@ -67,11 +68,17 @@ typedef struct BpParticles {
     size_t count;
     double (*position)[3];
     BpParticleTag *tag;
-    float *radius;                         /* Optional; NaN: none */
-    float (*color)[3];                     /* Optional; linear, in [0, 1] */
-    float *column[BP_PARTICLE_WANTED_MAX]; /* of the wanted columns, in their order */
+    float *radius;                          /* Optional; NaN: none */
+    float (*color)[3];                      /* Optional; linear, in [0, 1] */
+    double *column[BP_PARTICLE_WANTED_MAX]; /* of the wanted columns, in their order; Optional: one that need
+                                               not be there; NaN: no value */
+    char **column_names; /* Optional: of all columns of numbers, if one need not be there */
+    size_t column_count;
+    uint32_t *gone; /* Optional: the numbers, rising, of particles of the file that have no place */
+    size_t gone_count;
     BpNames names;
     bool has_residue, has_chain, has_type, has_element; /* some particle has one */
+    bool has_records;                                   /* the format tells ATOM and HETATM apart */
     bool element_guessed;                               /* some from its name */
     bool has_cell, periodic[3];                         /* along each edge; none where there is no cell */
     double cell_origin[3], cell[3][3]; /* the cell's edges as rows; those that repeat are independent */
@@ -100,11 +107,11 @@ typedef struct BpParticleFile BpParticleFile;
 BpParticleFormat bp_particle_format_find(const char *name, FILE *stream);
 
 /* Opens a file for its frames. `stream`: a regular file, which stays the caller's and must outlive the
- * result; `name` stands in messages. `wanted`: the columns to keep, by name; a frame without one is an
- * error that names the nearest. */
+ * result; `name` stands in messages. `wanted`: the columns to keep, by name; a frame without one of the first
+ * `needed` is an error that names those that are there. */
 BpStatus bp_particle_file_open(FILE *stream, const char *name, BpParticleFormat format,
-                               const char *const *wanted, size_t wanted_count, BpParticleFile **file,
-                               BpError *err);
+                               const char *const *wanted, size_t wanted_count, size_t needed,
+                               BpParticleFile **file, BpError *err);
 /* Reads the next frame into `particles`, which holds a frame or is zeroed; NULL: passes over it, and looks
  * only at what is needed for that. *end: there was none. The first frame of a file must exist. A later one
  * that breaks off at the end of the file, as while it is being written, does not count; a fault before the

@@ -119,6 +119,7 @@ BpStatus pdb_read_atom(const Input *input, const char *line, PdbAtom *atom, PdbF
     char symbol[4], padded[5] = "    ", number[8], segment[8], text[16];
     *atom = (PdbAtom){.particle = PARTICLE_NONE};
     Particle *const particle = &atom->particle;
+    const bool hetero = line[0] == 'H';
     const bool by_serial = by > 0 && digits_at(line, 7, 11 + by);
     fixed_text(line, length, line[0] == 'A' ? 5 : 7, by_serial ? 11 + by : 11, atom->serial,
                sizeof atom->serial);
@@ -150,6 +151,7 @@ BpStatus pdb_read_atom(const Input *input, const char *line, PdbAtom *atom, PdbF
     symbol_at(line, length, symbol);
     form->names_left |= strspn(padded, "CNOHPS") == 1 && strcmp(padded + 1, "   ") == 0;
     atom_identify(particle, symbol, form->names_left ? atom->name : padded, !form->names_left);
+    if (hetero) particle->flags |= BP_PARTICLE_HETERO;
     atom->values[0] = number_at(line, length, 55, 60);
     atom->values[1] = number_at(line, length, 61, 66);
     atom->values[2] = residue_number(number);

@@ -102,6 +102,7 @@ BpStatus pqr_read_atom(const Input *input, const char *line, PdbAtom *atom, BpEr
     if (!take_text(atom, text, &wrong) &&
         !(part_columns(line, again, sizeof again) && take_text(atom, again, &other)))
         return input_wrong(input, wrong[0] != '\0' ? wrong : line, expected, err);
+    if (line[0] == 'H') atom->particle.flags |= BP_PARTICLE_HETERO;
     atom->particle.name = atom->name;
     atom->particle.chain = atom->chain;
     atom->particle.values = atom->values;

@@ -32,6 +32,7 @@ typedef enum Field {
     AUTH_SEQUENCE,
     LABEL_SEQUENCE,
     INSERTION,
+    RECORD,
     FIELD_COUNT
 } Field;
 
@@ -40,7 +41,7 @@ static const char *const field_names[FIELD_COUNT] = {
     "label_alt_id",       "auth_comp_id",   "label_comp_id", "auth_asym_id",
     "label_asym_id",      "Cartn_x",        "Cartn_y",       "Cartn_z",
     "occupancy",          "B_iso_or_equiv", "auth_seq_id",   "label_seq_id",
-    "pdbx_PDB_ins_code"};
+    "pdbx_PDB_ins_code",  "group_PDB"};
 
 /* The numbers of a block that say what the cell is and how it lies: lengths and angles, then two matrices of
  * three rows, each with its vector behind it. */
@@ -399,6 +400,7 @@ static BpStatus add_row(BpParticleFile *file, State *state, BpError *err) {
     particle.residue = text_of(state, AUTH_RESIDUE, LABEL_RESIDUE);
     particle.chain = text_of(state, AUTH_CHAIN, LABEL_CHAIN);
     atom_identify(&particle, text_of(state, SYMBOL, SYMBOL), particle.name, false);
+    if (strcasecmp(text_of(state, RECORD, RECORD), "HETATM") == 0) particle.flags |= BP_PARTICLE_HETERO;
     const double values[3] = {number_in(state, OCCUPANCY, OCCUPANCY), number_in(state, B_FACTOR, B_FACTOR),
                               number_in(state, AUTH_SEQUENCE, LABEL_SEQUENCE)};
     particle.values = values;
@@ -513,7 +515,10 @@ static BpStatus begin_frame(BpParticleFile *file, State *state, BpError *err) {
     static const char *const columns[] = {"occupancy", "bfactor", "residue_number"};
     state->places.count = 0;
     BP_TRY(frame_begin(file, columns, 3, err));
-    if (file->out != NULL) file->out->angstrom = 1;
+    if (file->out != NULL) {
+        file->out->angstrom = 1;
+        file->out->has_records = state->field_column[RECORD] >= 0;
+    }
     put_cell(file, &state->cell);
     return BP_OK;
 }

@@ -534,9 +534,9 @@ static BpStatus take_velocity(BpParticleFile *file, Data *data, char **words, si
     if (file->taken_count == 0) return BP_OK;
     BP_TRY(find_place(&file->input, data, words[0], &at, err));
     at = frame_place(file, at);
-    for (size_t w = 0; w < file->taken_count; w++) {
-        const int c = file->wanted_column[w] - VELOCITY;
-        if (c >= 0 && at != UINT32_MAX) file->out->column[w][at] = (float)velocity[c];
+    for (size_t k = 0; k < file->taken_count; k++) {
+        const int c = file->wanted_column[k] - VELOCITY;
+        if (c >= 0 && at != UINT32_MAX) file->out->column[file->wanted_place[k]][at] = velocity[c];
     }
     return BP_OK;
 }

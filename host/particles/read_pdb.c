@@ -171,6 +171,7 @@ BpStatus read_pdb(BpParticleFile *file, bool *end, BpError *err) {
     state->before = file->added;
     if (file->out == NULL) return model ? take_cell_behind(file, state, err) : BP_OK;
     file->out->angstrom = 1;
+    file->out->has_records = true;
     if (model && !state->tail_read) BP_TRY(read_tail(input, state, err));
     if (model) BP_TRY(take_cell_behind(file, state, err));
     if (state->cell[0] != '\0') take_cell(file, state);

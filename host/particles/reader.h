@@ -23,18 +23,18 @@ struct BpParticleFile {
     Input input;
     BpParticleFormat format;
     char wanted[BP_PARTICLE_WANTED_MAX][64];
-    size_t wanted_count;
-    uint64_t frame;         /* the number of the next frame */
-    uint64_t frame_count;   /* once it is known */
-    bool frame_count_known; /* from an index, or from reading all */
-    bool cut;               /* behind the last whole frame there is a part of another */
+    size_t wanted_count, needed; /* the first `needed` must be in every frame */
+    uint64_t frame;              /* the number of the next frame */
+    uint64_t frame_count;        /* once it is known */
+    bool frame_count_known;      /* from an index, or from reading all */
+    bool cut;                    /* behind the last whole frame there is a part of another */
     Behind behind;
     BpParticles *out;   /* where frame_add puts points; NULL: nowhere */
-    size_t taken_count; /* of the wanted columns, how many this frame's are taken: all, or none when passed
-                           over */
-    int wanted_column[BP_PARTICLE_WANTED_MAX]; /* the first taken_count of them are set */
-    size_t added;                              /* in this frame, with those that were left out */
-    uint32_t *gone;                            /* the numbers of those that were left out, rising */
+    size_t taken_count; /* how many wanted columns this frame has; 0 when it is passed over */
+    int wanted_column[BP_PARTICLE_WANTED_MAX];   /* which columns of the frame these are */
+    size_t wanted_place[BP_PARTICLE_WANTED_MAX]; /* and which of the wanted */
+    size_t added;                                /* in this frame, with those that were left out */
+    uint32_t *gone;                              /* the numbers of those that were left out, rising */
     size_t gone_count, gone_capacity;
     char unread_color[32]; /* a column of this frame that seems to hold colours; "" */
     ColorRange colors;     /* of this frame; what the type says of them, the reader sets after frame_begin */

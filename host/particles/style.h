@@ -1,13 +1,13 @@
 /* style.h: how particles are to look: what is shown, sizes, colours, bonds, the cell.
  *
- * In:    nothing.   Out: a style; the columns of a file that it needs.
+ * In:    nothing.   Out: a style; the columns of a file that it needs or wants.
  * Knows: what can be chosen.   Does not know: how files are read, what is made of particles (add_to_scene.h).
  */
 #ifndef BP_PARTICLES_STYLE_H
 #define BP_PARTICLES_STYLE_H
 
 #include "colormap.h"
-#include "particles.h"
+#include "select.h"
 
 typedef enum BpStyleKind { BP_STYLE_SPACEFILL, BP_STYLE_BALL_AND_STICK } BpStyleKind;
 
@@ -38,6 +38,8 @@ typedef struct BpStyleNamed {
 } BpStyleNamed;
 
 typedef struct BpParticleStyle {
+    BpExpression *select; /* Optional, owned: only particles for which it holds are shown, and all of these */
+    BpExpression *radius_value, *color_value; /* Optional, owned: in place of the column */
     BpStyleKind kind;
     BpRadiusBy radius_by;
     double radius; /* constant; otherwise the factor */
@@ -45,8 +47,8 @@ typedef struct BpParticleStyle {
     BpStyleNamed radii[BP_STYLE_NAMED_MAX]; /* by type, or by element's symbol */
     size_t radius_count;
     BpColorBy color_by;
-    double color[3]; /* constant, linear */
-    char color_column[64];
+    double color[3];       /* constant, linear */
+    char color_column[64]; /* of a value, its text, which may be cut */
     BpColormap map;
     bool has_range;
     double range[2];
@@ -60,11 +62,16 @@ typedef struct BpParticleStyle {
 
 /* Space-filling, everything by what the file has, solvent hidden, molecules whole. */
 void bp_particle_style_defaults(BpParticleStyle *style);
+void bp_particle_style_clear(BpParticleStyle *style);
 
 /* The linear colour that the style's colormap has at `share`: its albedo. */
 void bp_particle_style_map(const BpParticleStyle *style, double share, double color[3]);
 
-/* The columns that the style needs, in the order in which a file is to be opened with them. */
-size_t bp_particle_style_columns(const BpParticleStyle *style, const char *columns[BP_PARTICLE_WANTED_MAX]);
+/* The columns that a file is to be opened with, of which it must have the first `needed`. */
+typedef struct BpStyleColumns {
+    const char *name[BP_PARTICLE_WANTED_MAX];
+    size_t count, needed;
+} BpStyleColumns;
+void bp_particle_style_columns(const BpParticleStyle *style, BpStyleColumns *columns);
 
 #endif

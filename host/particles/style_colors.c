@@ -65,26 +65,31 @@ static int compare_ranked(const void *a, const void *b) {
     return strcmp(one, other);
 }
 
-/* The kinds in the order of their names, so that all frames of a trajectory give a kind the same colour. */
-static BpStatus rank_names(BpStyleJob *job, BpError *err) {
+/* The kinds of the particles of `among` that have no rank yet, behind the `before` that have one, in the
+ * order of their names. Returns how many have a rank then. */
+static size_t rank_kinds(BpStyleJob *job, const bool *among, size_t before, Ranked *kinds) {
     const BpParticles *const p = job->p;
     size_t count = 0;
-    job->rank = calloc(p->names.count + 1, sizeof *job->rank);
-    Ranked *const kinds = malloc((p->names.count + 1) * sizeof *kinds);
-    if (job->rank == NULL || kinds == NULL) {
-        free(kinds);
-        return bp_fail(err, BP_ERR_MEMORY, "out of memory for colours");
-    }
     for (size_t i = 0; i < p->count; i++) {
         const uint16_t number = kind_of(job, i);
-        if (!job->shown[i] || job->rank[number] != 0) continue;
+        if (!among[i] || job->rank[number] != 0) continue;
         job->rank[number] = 1;
         kinds[count++] = (Ranked){bp_style_name(p, number), number};
     }
     qsort(kinds, count, sizeof *kinds, compare_ranked);
-    for (size_t k = 0; k < count; k++) job->rank[kinds[k].number] = (uint16_t)(k + 1);
+    for (size_t k = 0; k < count; k++) job->rank[kinds[k].number] = (uint16_t)(before + k + 1);
+    return before + count;
+}
+
+/* By their names, so that all frames of a trajectory give a kind the same colour, whatever is selected. */
+static BpStatus rank_names(BpStyleJob *job, BpError *err) {
+    const BpParticles *const p = job->p;
+    job->rank = calloc(p->names.count + 1, sizeof *job->rank);
+    Ranked *const kinds = malloc((p->names.count + 1) * sizeof *kinds);
+    const bool good = job->rank != NULL && kinds != NULL;
+    if (good) rank_kinds(job, job->base, rank_kinds(job, job->usual, 0, kinds), kinds);
     free(kinds);
-    return BP_OK;
+    return good ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "out of memory for colours");
 }
 
 /* What colours are by. */
@@ -96,12 +101,8 @@ static BpStatus rank_names(BpStyleJob *job, BpError *err) {
     X(BP_COLOR_RESIDUE, "residues") X(BP_COLOR_TYPE, "types") X(BP_COLOR_COLUMN, "values")
 BP_WORDS(BpColorBy, static const char *const color_names, COLOR_WORDS);
 
-static const float *color_column(const BpStyleJob *job) {
-    return job->p->column[job->style->radius_by == BP_RADIUS_COLUMN];
-}
-
 static bool is_without_value(const BpStyleJob *job, size_t i) {
-    return isnan(color_column(job)[i]);
+    return isnan(job->color_numbers[i]);
 }
 
 static bool is_without_color(const BpStyleJob *job, size_t i) {
@@ -139,18 +140,20 @@ BpStatus bp_style_choose_colors(BpStyleJob *job, BpError *err) {
         return rank_names(job, err);
     if (job->color_by == BP_COLOR_AUTO) say_missing(job, "a colour", is_without_color);
     if (job->color_by != BP_COLOR_COLUMN) return BP_OK;
-    const float *const column = color_column(job);
+    BP_TRY(bp_style_numbers(job, style->color_value, style->color_column, "color.value", &job->color_numbers,
+                            err));
+    const double *const numbers = job->color_numbers;
     job->range[0] = INFINITY;
     job->range[1] = -INFINITY;
     for (size_t i = 0; i < p->count; i++) {
-        if (!job->shown[i] || !isfinite(column[i])) continue;
-        job->range[0] = fmin(job->range[0], (double)column[i]);
-        job->range[1] = fmax(job->range[1], (double)column[i]);
+        if (!job->shown[i] || !isfinite(numbers[i])) continue;
+        job->range[0] = fmin(job->range[0], numbers[i]);
+        job->range[1] = fmax(job->range[1], numbers[i]);
     }
     if (style->has_range) memcpy(job->range, style->range, sizeof job->range);
     if (!(job->range[0] <= job->range[1]))
-        return bp_fail(err, BP_ERR_SCENE, "found no number in column \"%s\", expected some to colour by",
-                       style->color_column);
+        return bp_fail(err, BP_ERR_SCENE, "found no number in %s \"%s\", expected some to colour by",
+                       style->color_value != NULL ? "the value" : "column", style->color_column);
     bp_style_say(job, "coloured by %s from %.4g to %.4g (%s)", style->color_column, job->range[0],
                  job->range[1], bp_colormap_names[style->map]);
     say_missing(job, "a value", is_without_value);
@@ -185,7 +188,7 @@ void bp_style_color(const BpStyleJob *job, size_t i, double color[3]) {
         look_up(job->linear, bp_elements[tag->element].color, color);
         return;
     case BP_COLOR_COLUMN: {
-        const double value = (double)color_column(job)[i];
+        const double value = job->color_numbers[i];
         const double width = job->range[1] - job->range[0];
         if (!isnan(value)) {
             bp_particle_style_map(style, width > 0 ? (value - job->range[0]) / width : 0.5, color);

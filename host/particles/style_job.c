@@ -5,6 +5,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 void bp_style_say(BpStyleJob *job, const char *format, ...) {
@@ -17,6 +18,36 @@ void bp_style_say(BpStyleJob *job, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(job->summary + begin, job->size - begin, format, arguments);
     va_end(arguments);
+}
+
+BpSelectFrame bp_style_frame(const BpStyleJob *job) {
+    return (BpSelectFrame){job->p, job->columns.name, job->columns.count};
+}
+
+BpStatus bp_style_fail_in(const char *member, BpStatus status, BpError *fault, BpError *err) {
+    if (status == BP_OK) return BP_OK;
+    bp_fail(err, status, "\"%s\": %s", member, fault->message);
+    bp_error_attach(err, fault->attachment);
+    bp_error_clear(fault);
+    return status;
+}
+
+BpStatus bp_style_numbers(const BpStyleJob *job, const BpExpression *value, const char *column,
+                          const char *member, double **numbers, BpError *err) {
+    const size_t count = job->p->count;
+    *numbers = malloc((count + 1) * sizeof **numbers);
+    if (*numbers == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu numbers", count);
+    if (value != NULL) {
+        const BpSelectFrame frame = bp_style_frame(job);
+        BpError fault = {0};
+        return bp_style_fail_in(member, bp_select_numbers(&frame, value, *numbers, &fault), &fault, err);
+    }
+    for (size_t c = 0; c < job->columns.needed; c++) {
+        if (strcmp(job->columns.name[c], column) != 0) continue;
+        /* Single precision is what pictures were made of before values could be computed. */
+        for (size_t i = 0; i < count; i++) (*numbers)[i] = (double)(float)job->p->column[c][i];
+    }
+    return BP_OK;
 }
 
 const char *bp_style_name(const BpParticles *p, uint16_t number) {

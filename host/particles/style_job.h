@@ -14,8 +14,13 @@ typedef struct BpStyleJob {
     const BpParticleStyle *style;
     BpScene *scene;
     uint32_t material;
+    BpStyleColumns columns; /* those that the frame was read with */
     bool *shown;
-    size_t shown_count;
+    size_t shown_count, selected_count;
+    /* Without "select" both are the same as `shown`: those that would be shown without it, by which guesses
+     * go that hold for the whole file; those that would be if all were selected, which bonds join. */
+    bool *usual, *base;
+    double *radius_numbers, *color_numbers; /* of each particle, where these go by a column or a value */
     BpBonds bonds;
     double spacing, range[2];
     BpRadiusBy radius_by;
@@ -27,6 +32,15 @@ typedef struct BpStyleJob {
     char *summary;
     size_t size;
 } BpStyleJob;
+
+/* What expressions are evaluated for. */
+BpSelectFrame bp_style_frame(const BpStyleJob *job);
+/* The numbers of a value of the style, or else of a column, for each particle: as the caller's to free. An
+ * error names `member`. */
+BpStatus bp_style_numbers(const BpStyleJob *job, const BpExpression *value, const char *column,
+                          const char *member, double **numbers, BpError *err);
+/* Puts the member before an error in its expression. */
+BpStatus bp_style_fail_in(const char *member, BpStatus status, BpError *fault, BpError *err);
 
 /* Adds to the summary. */
 void bp_style_say(BpStyleJob *job, const char *format, ...) BP_PRINTF_LIKE(2, 3);

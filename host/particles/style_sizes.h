@@ -7,7 +7,8 @@
 
 #include "style_job.h"
 
-/* Fills job->shown and job->shown_count. BP_ERR_MEMORY. */
+/* Fills job->shown, usual and base, and the counts. BP_ERR_SCENE: nothing is selected, or the file lacks what
+ * the expression is about. BP_ERR_MEMORY. */
 BpStatus bp_style_choose_shown(BpStyleJob *job, BpError *err);
 /* Chooses by what radii are. BP_ERR_SCENE: the file lacks that. */
 BpStatus bp_style_choose_radii(BpStyleJob *job, BpError *err);

@@ -162,6 +162,7 @@ _VECTOR = c.c_double * 3
 _STATUS: typing.Dict[str, typing.List[typing.Any]] = {
     "bp_scene_load": [c.c_char_p, _HANDLE],
     "bp_scene_parse_with_shapes": [c.c_char_p, c.c_size_t, c.c_char_p, c.POINTER(BpShapeSets), _HANDLE],
+    "bp_scene_load_selected": [c.c_char_p, c.c_char_p, _HANDLE],
     "bp_scene_set_width": [c.c_void_p, c.c_uint32],
     "bp_devices_list": [c.POINTER(c.POINTER(BpDeviceInfo)), c.POINTER(c.c_size_t)],
     "bp_device_find": [c.c_char_p, c.POINTER(BpDeviceInfo)],

@@ -315,7 +315,8 @@ def make_scene(subject: typing.Optional[Subject] = None, *, vertices: typing.Opt
                up: typing.Optional[str] = None, camera: typing.Optional[Document] = None,
                width: typing.Optional[int] = None, height: typing.Optional[int] = None,
                materials: typing.Optional[Document] = None, background: typing.Any = None,
-               lighting: typing.Optional[str] = None, backdrop: typing.Any = None) -> Scene:
+               lighting: typing.Optional[str] = None, backdrop: typing.Any = None,
+               select: typing.Optional[str] = None) -> Scene:
     """The scene that render() would render of the same arguments; its camera can be used for other pictures."""
     subject = _with_arrays(subject, {"vertices": vertices, "faces": faces, "normals": normals, "lines": lines, "colors": colors})
     looks: typing.Dict[str, typing.Any] = {"radius": radius, "color": color, "material": material, "cmap": cmap,
@@ -330,15 +331,19 @@ def make_scene(subject: typing.Optional[Subject] = None, *, vertices: typing.Opt
                                                      if value is not None]
         if extra:
             raise lib.SceneError(f"{extra[0]}: found beside a whole scene, expected it in the scene itself")
+        if select is not None and not isinstance(subject, (str, os.PathLike)):
+            raise lib.SceneError('select: found beside a scene that is no file, expected "select" in its "particles"')
         if isinstance(subject, Scene):
             scene = subject
         elif isinstance(subject, collections.abc.Mapping):
             scene = Scene(subject)
         else:
-            scene = Scene.load(subject)
+            scene = Scene.load(subject, select)
         if width is not None and width != scene.width:
             scene.set_width(width)
         return scene
+    if select is not None:
+        raise lib.SceneError("select: found beside arrays, expected the path of a file of particles; index the arrays instead")
     shapes: typing.List[Shape]
     if _is_shapes(subject):
         shapes = list_of_shapes(subject)
@@ -376,6 +381,7 @@ def render(subject: typing.Optional[Subject] = None, *, vertices: typing.Optiona
            camera: typing.Optional[Document] = None, width: typing.Optional[int] = None,
            height: typing.Optional[int] = None, materials: typing.Optional[Document] = None,
            background: typing.Any = None, lighting: typing.Optional[str] = None, backdrop: typing.Any = None,
+           select: typing.Optional[str] = None,
            progress: typing.Union[None, bool, typing.Callable[[Progress], object]] = None,
            **options: typing.Any) -> Picture:
     """Renders a picture.
@@ -387,6 +393,7 @@ def render(subject: typing.Optional[Subject] = None, *, vertices: typing.Optiona
     color; camera: members of the scene's "camera" (without lookfrom, lookat or focus_dist it is fitted to the shapes); width, height: of the picture;
     materials, background, lighting, backdrop: as in a scene. Without background and lighting, the light is "soft" on white, and for
     a mesh that of a "studio".
+    select: of a file of particles, or of a scene's, only those for which this expression holds, such as "element == 'Fe'".
     progress: True for a line on standard error, or a function that is called with a Progress about five times a second;
     when it returns False, the render ends with what it has.
     options: those of Render (spp, error, time, seed, device, adaptive, aovs, ...).
@@ -400,7 +407,8 @@ def render(subject: typing.Optional[Subject] = None, *, vertices: typing.Optiona
     try:
         scene = make_scene(subject, vertices=vertices, faces=faces, normals=normals, lines=lines, colors=colors, radius=radius,
                            color=color, material=material, cmap=cmap, color_range=color_range, up=up, camera=camera, width=width,
-                           height=height, materials=materials, background=background, lighting=lighting, backdrop=backdrop)
+                           height=height, materials=materials, background=background, lighting=lighting, backdrop=backdrop,
+                           select=select)
         running = Render(scene, **options)
     except KeyboardInterrupt:
         raise Interrupted(None) from None

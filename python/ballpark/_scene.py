@@ -219,12 +219,19 @@ class Scene:
         return json.dumps(_plain(wanted, "")).encode(), names
 
     @classmethod
-    def load(cls, path: typing.Union[str, "os.PathLike[str]"]) -> "Scene":
-        """Reads a scene document, a file of particles (docs/PARTICLES.md) or one of a mesh."""
+    def load(cls, path: typing.Union[str, "os.PathLike[str]"], select: typing.Optional[str] = None) -> "Scene":
+        """Reads a scene document, a file of particles (docs/PARTICLES.md) or one of a mesh; of particles, where `select` is given,
+        those for which this expression holds, such as 'chain == "A" and not hydrogen'."""
         scene = cls.__new__(cls)
         scene._handle = lib.Handle("scene")
         encoded = c_text("path", path)
-        interruptible(lambda: lib.call("bp_scene_load", encoded, scene._handle.address))
+        if select is None:
+            interruptible(lambda: lib.call("bp_scene_load", encoded, scene._handle.address))
+        else:
+            if not isinstance(select, str):
+                raise wrong_type("select", select, "an expression such as 'type == 2'")
+            expression = c_text("select", select)
+            interruptible(lambda: lib.call("bp_scene_load_selected", encoded, expression, scene._handle.address))
         scene._read()
         return scene
 

@@ -65,8 +65,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     rewind(file);
     require(fwrite(data + 1, 1, size - 1, file) == size - 1 && fflush(file) == 0);
     (void)bp_particle_format_find("x.gz", file);
-    require(bp_particle_file_open(file, "x", FORMAT, wanted, data[0] < 128 ? 0 : 1, &particles_file, &err) ==
-            BP_OK);
+    require(bp_particle_file_open(file, "x", FORMAT, wanted, data[0] < 128 ? 0 : 1, data[0] < 192,
+                                  &particles_file, &err) == BP_OK);
     BpStatus status = BP_OK;
     while (status == BP_OK && !end && found < FRAMES_MAX) {
         status = bp_particle_file_next(particles_file, &particles, &end, &err);

@@ -14,7 +14,7 @@ from answers import AnswersTest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 READERS_PYTHON = os.environ.get("BALLPARK_READERS_PYTHON", sys.executable)
-ALTERNATIVE, DUMMY, GUESSED = 1, 2, 4
+ALTERNATIVE, DUMMY, GUESSED, HETERO = 1, 2, 4, 8
 
 Atom = collections.namedtuple("Atom", "x y z element flags name residue chain radius first second")
 

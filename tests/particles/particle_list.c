@@ -13,11 +13,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void print_number(const float *values, size_t i) {
-    if (values == NULL || isnan(values[i]))
+enum { COLUMNS = 2 };
+
+static void print_number(bool there, double value) {
+    if (!there || isnan(value))
         printf(", null");
     else
-        printf(", %.9g", (double)values[i]);
+        printf(", %.9g", value);
 }
 
 static void print_text(const BpParticles *p, uint16_t number) {
@@ -51,8 +53,9 @@ static void print_particle(const BpParticles *p, size_t i) {
     print_text(p, tag->name);
     print_text(p, tag->residue);
     print_text(p, tag->chain);
-    print_number(p->radius, i);
-    for (int c = 0; c < BP_PARTICLE_WANTED_MAX; c++) print_number(p->column[c], i);
+    print_number(p->radius != NULL, p->radius != NULL ? (double)p->radius[i] : 0);
+    for (int c = 0; c < COLUMNS; c++)
+        print_number(p->column[c] != NULL, p->column[c] != NULL ? p->column[c][i] : 0);
     printf("]\n");
 }
 
@@ -68,7 +71,7 @@ static int list(int argc, char **argv, FILE *messages) {
     BpStatus status = format == BP_PARTICLES_NONE ? BP_ERR_USAGE : BP_OK;
     if (status == BP_OK)
         status = bp_particle_file_open(stream, argv[1], format, wanted, argc > 3 ? (size_t)argc - 3 : 0,
-                                       &file, &err);
+                                       argc > 3 ? (size_t)argc - 3 : 0, &file, &err);
     if (status == BP_OK)
         status = bp_particle_file_frame(file, argc > 2 ? strtol(argv[2], NULL, 10) : 0, &particles, &err);
     if (status == BP_OK) status = bp_particle_file_count(file, &frames, &err);

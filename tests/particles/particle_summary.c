@@ -144,7 +144,8 @@ static int summarise(int argc, char **argv, FILE *messages) {
     const BpParticleFormat format = bp_particle_format_find(argv[1], stream);
     BpStatus status = format == BP_PARTICLES_NONE ? BP_ERR_USAGE : BP_OK;
     if (status == BP_OK)
-        status = bp_particle_file_open(stream, argv[1], format, wanted, wanted[0][0] != '\0', &file, &err);
+        status = bp_particle_file_open(stream, argv[1], format, wanted, wanted[0][0] != '\0',
+                                       wanted[0][0] != '\0', &file, &err);
     if (status == BP_OK)
         status = bp_particle_file_frame(file, argc > 2 ? strtol(argv[2], NULL, 10) : 0, &particles, &err);
     if (status == BP_OK) status = bp_particle_file_count(file, &frames, &err);

@@ -3,6 +3,7 @@ listed.py."""
 import itertools
 
 import listed
+from listed import HETERO
 from test_pdb_files import CELLS, TURNS, apply, inverse, shares_of, standard
 
 NAMES = ["group_PDB", "id", "type_symbol", "label_atom_id", "label_alt_id", "label_comp_id", "label_asym_id", "auth_seq_id", "Cartn_x", "Cartn_y",
@@ -59,7 +60,7 @@ class Cif(listed.ListTest):
             for before, behind in itertools.product(("", cell((20, 30, 40), (90, 90, 90))), repeat=2):
                 found = self.of("a.cif", text.replace("data_x\n", "data_x\n" + before) + behind)
                 self.assertEqual((found.head["frames"], len(found.atoms), "cell" in found.head), (1, 1, bool(before or behind)), text)
-                self.assertEqual(found.atoms[0][:5], (-3.5, 1.25, 4, "Zn", 0))
+                self.assertEqual(found.atoms[0][:5], (-3.5, 1.25, 4, "Zn", HETERO))
         del_z = {k: v for k, v in ONE.items() if k != "Cartn_z"}
         self.refuse("a.cif", "data_x\n" + items("atom_site", del_z), "no _atom_site.Cartn_z")
 

@@ -89,11 +89,13 @@ class Scenes(ProgramTest):
         entry = {"file": "a.dump", "frame": -1, "style": "ball-and-stick", "radius": {"column": "heat", "scale": 0.5},
                  "color": {"column": "heat", "map": "coolwarm", "range": [0, 3], "bar": True}, "bonds": {"radius": 0.1}, "box": True,
                  "solvent": True, "whole": False, "material": "m"}
+        other = {"file": "a.dump", "select": "heat >= 1 and type == 1", "radius": {"value": "0.1 * heat", "scale": 0.5},
+                 "color": {"value": "heat ^ 2", "map": "coolwarm"}, "frame": -1}
         camera = {"image_width": 30, "fit": "scene", "view": [1, 2, 3], "margin": 0.1, "vup": [0, 1, 0], "aperture": 0.5}
-        document = scene(camera=camera, particles=[entry], spheres=1)
+        document = scene(camera=camera, particles=[entry, other], spheres=1)
         self.write("x.json", document)
         written = self.document("x.json")
-        self.assertEqual(written["particles"], [entry])
+        self.assertEqual(written["particles"], [entry, other])
         for name, value in camera.items():
             self.assertEqual(written["camera"][name], value)
         self.assertEqual((len(written["spheres"]), list(written["materials"])), (1, ["m"]))

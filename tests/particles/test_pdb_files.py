@@ -7,7 +7,7 @@ import os
 import random
 
 import listed
-from listed import ALTERNATIVE, DUMMY, GUESSED
+from listed import ALTERNATIVE, DUMMY, GUESSED, HETERO
 
 
 def atom(serial=1, name=" CA ", letter=" ", residue="ALA", chain="A", number=1, code=" ", place=(0, 0, 0), occupancy=1.0, symbol="",
@@ -330,7 +330,8 @@ class Atoms(listed.ListTest):
                  good.replace("ATOM  12345", "HETATM112345"), good.replace("1234  ", "12345  "), good.replace("A1234 ", "A12345")]
         for line in moved:
             a = self.of("a.pdb", line, 0, "residue_number", "bfactor").atoms[0]
-            self.assertEqual((a[:3], a.element, a.flags, a.name, a.residue, a.chain, a.second), (place, "C", 0, "CA", "ALA", "A", 10), line)
+            self.assertEqual((a[:3], a.element, a.flags, a.name, a.residue, a.chain, a.second),
+                             (place, "C", HETERO if line[0] == "H" else 0, "CA", "ALA", "A", 10), line)
             self.assertEqual(a.first, 12345 if "A12345" in line else 1234, line)
 
     def test_coordinates_that_do_not_fit(self):

@@ -55,7 +55,9 @@ GOOD = {
                    "color": {"column": "mass", "map": "cividis", "range": [0, 1]}, "bonds": {"radius": 0.1},
                    "box": True, "solvent": True, "whole": False, "material": "a"},
                   {"file": "b.pdb", "radius": "covalent", "color": "chain"},
-                  {"file": "b.pdb", "radius": {"types": {"A": 1}}, "color": {"types": {"A": [1, 0, 0]}}}],
+                  {"file": "b.pdb", "radius": {"types": {"A": 1}}, "color": {"types": {"A": [1, 0, 0]}}},
+                  {"file": "b.pdb", "select": "chain == A", "radius": {"value": "2 * radius"},
+                   "color": {"value": "norm(x, y)", "map": "plasma", "range": [0, 1], "bar": True}}],
 }
 
 # Where, and what is put there. None: the member is removed.
@@ -101,6 +103,9 @@ BAD = [
     (["spheres", 0, "radius"], 0), (["spheres", 0, "radius"], None), (["spheres", 0, "center"], [0, 0]),
     (["spheres", 0, "material"], 1), (["spheres", 0, "centre"], [0, 0, 0]), (["spheres"], {}),
     (["camera", "projection"], "parallel"), (["camera", "view_height"], 1), (["camera", "fit"], "scene"), (["camera", "view"], "front"), (["camera", "margin"], 0.1),
+    (["particles", 3, "select"], ""), (["particles", 3, "select"], 3), (["particles", 3, "select"], "x" * 4097),
+    (["particles", 3, "solvent"], True), (["particles", 3, "color", "column"], "x"), (["particles", 3, "color", "by"], "type"),
+    (["particles", 3, "color", "value"], None), (["particles", 3, "radius", "column"], "x"), (["particles", 3, "radius", "by"], "vdw"),
     (["particles", 0, "file"], None), (["particles", 0, "frame"], 0.5), (["particles", 0, "style"], "sticks"),
     (["particles", 0, "radius"], 0), (["particles", 0, "radius"], "big"), (["particles", 0, "radius", "column"], "mass"),
     (["particles", 0, "radius", "scale"], -1), (["particles", 0, "color"], [1, 1, 2]), (["particles", 0, "color"], "elements"),

@@ -78,10 +78,14 @@ BpStatus bp_setup_load_changed(const BpCommandLine *line, const char *path, cons
     all.fresnel = line->fresnel;
     all.lighting = line->lighting;
     all.projection = line->projection;
+    all.select = line->select;
+    all.select_by = "--select";
     BP_TRY(load(path, &all, scene, err));
     BpStatus status = bp_file_conflicts_check_scene(line, NULL, *scene, err);
     if (status == BP_OK && bp_option_given(line, BP_OPTION_FRAME) && !(*scene)->has_particles)
         status = bp_fail(err, BP_ERR_USAGE, "--frame: %.400s has no particles, so it has one frame", path);
+    if (status == BP_OK && line->select != NULL && !(*scene)->has_particles)
+        status = bp_fail(err, BP_ERR_USAGE, "--select: %.400s has no particles to select from", path);
     if (status != BP_OK) bp_scene_destroy(scene);
     return status;
 }

@@ -66,6 +66,9 @@ enum {
            "one numbered picture per frame, with one camera and one range of colours; a slice as in "        \
            "Python: from A up to, but not including, B, every S-th",                                         \
            BpSlice, frames, BP_SLICE("A:B:S"))                                                               \
+    OPTION(SELECT, "select", 0, BP_TRACERS | BP_SCENE,                                                       \
+           "show only particles for which this holds, such as 'chain == \"A\" and not hydrogen'",            \
+           const char *, select, BP_TEXT("EXPRESSION"))                                                      \
     OPTION(TURNTABLE, "turntable", 0, BP_RENDER,                                                             \
            "N numbered pictures from a circle around the vertical axis", uint32_t, turntable,                \
            BP_WHOLE("N", 2, 100000))                                                                         \
