@@ -14,6 +14,7 @@ Check = namedtuple("Check", "scene samples options layer")
 Test = namedtuple("Test", "program case layer")
 Script = namedtuple("Script", "path arguments layer")
 Program = namedtuple("Program", "program arguments layer")
+Lister = namedtuple("Lister", "program path arguments layer")
 
 
 def check(scene, samples=16, *options, layer="5 picture"):
@@ -34,6 +35,16 @@ def lamp_case(number):
 def particle_scenes(*names):
     """Tests of tests/particles/test_particle_scenes.py."""
     return Script("tests/particles/test_particle_scenes.py", tuple(f"Scenes.test_{name}" for name in names), "1 exact")
+
+
+def selections(*names):
+    """Tests of tests/particles/test_select_scenes.py."""
+    return Script("tests/particles/test_select_scenes.py", tuple(f"Selections.test_{name}" for name in names), "1 exact")
+
+
+def select(name):
+    """A test of tests/particles/test_select.py, as "Grammar.test_functions"."""
+    return Lister("particle_select", "tests/particles/test_select.py", (name,), "1 exact")
 
 
 def words(*names):
@@ -272,6 +283,43 @@ MUTANTS = [
            [words("schema")]),
     Mutant("a word of its own", "the schema and the command line have another",
            [patch("host/scene/lighting.c", '"rembrandt", "overhead"', '"rembrandt", "zenith"')], [words("schema")]),
+    # ---- selections -----------------------------------------------------------------------------------------
+    Mutant("and binds as or does", "precedence", [
+        patch("host/expressions/parse.c", "    while (p->token.kind == TOKEN_AND) {\n",
+              "    while (p->token.kind == TOKEN_AND || p->token.kind == TOKEN_OR) {\n        const bool both = p->token.kind == TOKEN_AND;\n"),
+        patch("host/expressions/parse.c", "join(p, OP_AND, BP_VALUE_TRUTH, *node, right, node)",
+              "join(p, both ? OP_AND : OP_OR, BP_VALUE_TRUTH, *node, right, node)")],
+           [select("Grammar.test_random_expressions")]),
+    Mutant("within a distance that is not squared", "the square of the way is compared", [
+        patch("host/particles/within.c", ".squared = reach * reach", ".squared = reach")], [select("Within.test_reach_belongs_to_it")]),
+    Mutant("within the cell's images left out", "the way to the particle itself", [
+        patch("host/particles/within.c", "p->position[k], image, way);", "p->position[k], nowhere, way);")], [select("Within.test_beside_all_pairs")]),
+    Mutant("within images that lie too near", "a walk that is cut short in thin cells", [
+        patch("host/particles/within.c", "2 * grid->sides[e] + 1;", "grid->sides[e] / 2;")], [select("Within.test_beside_all_pairs")]),
+    Mutant("indices from 1", "as LAMMPS numbers atoms", [
+        patch("host/particles/select.c", "(double)(first + i + gone)", "(double)(first + i + gone + 1)")], [select("Words.test_words_of_molecules")]),
+    Mutant("indices of what is left", "those without a place were not counted", [
+        patch("host/particles/select.c", "(double)(first + i + gone)", "(double)(first + i)")], [select("Words.test_index_counts_what_has_no_place")]),
+    Mutant("names in any case", "ca is no CA", [
+        patch("host/particles/select.c", 'X(WORD_NAME, "name", TEXT)', 'X(WORD_NAME, "name", BP_VALUE_TEXT, true)')],
+           [select("Words.test_words_of_molecules")]),
+    Mutant("elements in one case", "files have FE and Fe", [
+        patch("host/particles/select.c", '"element", BP_VALUE_TEXT, true', '"element", BP_VALUE_TEXT, false')], [select("Words.test_words_of_molecules")]),
+    Mutant("columns as floats", "charge == 0.1 held nowhere", [
+        patch("host/particles/frame.c", "[p->count] = particle->values", "[p->count] = (double)(float)particle->values")],
+           [select("Words.test_numbers_are_doubles")]),
+    Mutant("the remainder of C", "it has the sign of the dividend", [
+        patch("host/expressions/evaluate.c", "rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest", "rest")],
+           [select("Grammar.test_random_expressions")]),
+    Mutant("bonds of either end", "a bond stuck out of what is selected", [
+        patch("host/particles/style_bonds.c", "if (!job->shown[a] || !job->shown[b]) continue;", "if (!job->shown[a] && !job->shown[b]) continue;")],
+           [selections("bonds_have_both_ends_selected")]),
+    Mutant("colours of all for those selected", "the range of a column", [
+        patch("host/particles/style_colors.c", "if (!job->shown[i] || !isfinite(numbers[i])) continue;", "if (!job->base[i] || !isfinite(numbers[i])) continue;")],
+           [selections("values_as_colors_and_radii")]),
+    Mutant("molecules made whole by what is selected", "parts of one molecule lay in different images", [
+        patch("host/particles/add_to_scene.c", "bp_bonds_find(p, job->base,", "bp_bonds_find(p, job->shown,")],
+           [selections("guesses_hold_for_the_whole_file")]),
     # ---- bonds ----------------------------------------------------------------------------------------------
     Mutant("a ligand's bonds for a protein's", "PDB files list the bonds of ligands, which stood for all", [
         patch("host/particles/bonds.c", "particles->bond_count == 0 || particles->bonds_partial;", "particles->bond_count == 0;")],

@@ -32,7 +32,7 @@ import threading
 import time
 
 import kills
-from mutants import MUTANTS, Check, Program, Script
+from mutants import MUTANTS, Check, Lister, Program, Script
 
 SURVIVED, KILLED, ERROR = "SURVIVED", "killed", "ERROR"
 RUN_LONG = ("test_lobes", "test_kernel_samplers", "tests/unseen/test_unseen_means.py")  # longer than they compile
@@ -205,8 +205,20 @@ class Bench:
             return SURVIVED, "passed"
         return (KILLED, "failed") if done.returncode == 1 else (ERROR, f"exit code {done.returncode}: {done.stderr.strip()[:300]}")
 
+    def run_lister(self, trial, environment, program):
+        """Tests in Python of a program that answers questions about files."""
+        environment = {**environment, "PYTHONPATH": os.path.join(self.source, "tests/support")}
+        command = [sys.executable, "-B", os.path.join(self.source, trial.path), program, *trial.arguments]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, errors="replace", timeout=300)
+        if done.returncode == 0:
+            return SURVIVED, "passed"
+        failed = [line for line in done.stderr.splitlines() if line.startswith("AssertionError: ")]
+        if done.returncode != 1 or not failed:
+            return ERROR, (done.stdout + done.stderr).strip()[-300:]
+        return KILLED, failed[0][:160]
+
     def run(self, trial, environment, objects):
-        way = {Check: self.run_check, Script: self.run_script, Program: self.run_program}.get(type(trial), self.run_test)
+        way = {Check: self.run_check, Script: self.run_script, Program: self.run_program, Lister: self.run_lister}.get(type(trial), self.run_test)
         target = f"tests/{trial.program}" if hasattr(trial, "program") else "ballpark"
         program = self.relink(target, objects) if objects else os.path.join(self.build, target)
         if getattr(trial, "program", getattr(trial, "path", "")) in RUN_LONG:
@@ -217,7 +229,7 @@ class Bench:
 def name_of(trial):
     if isinstance(trial, Check):
         return f"{trial.scene}, {trial.samples} samples"
-    if isinstance(trial, Script):
+    if isinstance(trial, (Script, Lister)):
         return f"{os.path.basename(trial.path)} {' '.join(trial.arguments)}"
     if isinstance(trial, Program):
         return " ".join((trial.program, *trial.arguments))
