@@ -376,6 +376,10 @@ typedef enum BpCaustics {
     BP_CAUSTICS_ON
 } BpCaustics;
 
+/* Whether deep paths that carry little end by chance, and those that go on carry more instead (Russian
+ * roulette). Pictures take less time and have hardly more noise. Both converge to the same picture. */
+typedef enum BpRoulette { BP_ROULETTE_OFF, BP_ROULETTE_ON } BpRoulette;
+
 /* Start from bp_render_defaults(). */
 typedef struct BpRenderOptions {
     uint64_t samples_per_pixel; /* 1 .. 2^32 - first_sample */
@@ -390,6 +394,8 @@ typedef struct BpRenderOptions {
                                        films then record off */
     BpCaustics caustics;            /* the same; off without light sampling; BP_CAUSTICS_AUTO is off with
                                        samples_only */
+    BpRoulette roulette; /* on has no effect where no path is so deep, or all surfaces pass on all light;
+                            reports and films then record off */
     BpKernelForm kernel;
     bool all_effects;       /* build the general kernel instead of the specialised one */
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effect() although nothing calls for it */
@@ -664,6 +670,7 @@ typedef struct BpFilmInfo {
     BpNumerics numerics;
     BpLightSampling light_sampling;
     BpCaustics caustics;
+    BpRoulette roulette;
     BpTransfer transfer; /* of the scene, for writing the picture */
 } BpFilmInfo;
 BP_API void bp_film_info(const BpFilm *film, BpFilmInfo *info);

@@ -18,7 +18,8 @@
     X(BpMath, math, "math", "kinds of mathematics")                                                          \
     X(BpNumerics, numerics, "numerics", "numerics")                                                          \
     X(BpLightSampling, light_sampling, "light-sampling", "ways to find lights")                              \
-    X(BpCaustics, caustics, "caustics", "ways to find caustics")
+    X(BpCaustics, caustics, "caustics", "ways to find caustics")                                             \
+    X(BpRoulette, roulette, "roulette", "choices of roulette")
 
 /* Expands the list to members of a struct. */
 #define BP_SETTING_MEMBER(type, member, option, plural) type member;

@@ -62,8 +62,8 @@ BpStatus bp_check_create(const BpScene *scene, const BpCheckOptions *options, st
     if (status == BP_OK)
         status = device != NULL ? bp_render_create_on(scene, &first, &device, 1, &check->render, err)
                                 : bp_render_create(scene, &first, NULL, 0, &check->render, err);
-    check->result.kernel.brightest = check->result.reference.brightest =
-        bp_scene_radiance_bound(scene, first.max_depth, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF);
+    check->result.kernel.brightest = check->result.reference.brightest = bp_scene_radiance_bound(
+        scene, first.max_depth, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, first.roulette);
     if (status != BP_OK) bp_check_destroy(&check);
     *check_out = check;
     return status;

@@ -78,6 +78,14 @@ static void print_lamp_ray(const BpScene *scene, const BpPathStep *step, FILE *o
         fprintf(out, " is stopped by %s\n", shape_name(scene, step->seen, name));
 }
 
+static void print_roulette(const BpPathStep *step, FILE *out) {
+    if (step->chance > 0 && step->ended)
+        fprintf(out, "       roulette, with a chance of %.4g to go on, ends the path here\n", step->chance);
+    else if (step->chance > 0)
+        fprintf(out, "       roulette, with a chance of %.4g, lets it go on and carry %.4g times as much\n",
+                step->chance, 1 / step->chance);
+}
+
 static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, uint32_t y, uint64_t sample,
                        uint64_t seed, FILE *out) {
     fprintf(out, "  pixel (%" PRIu32 ", %" PRIu32 "), sample %" PRIu64 ", seed %" PRIu64 ", on ", x, y,
@@ -127,6 +135,7 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
                 if ((step->discs >> disc & 1u) != 0) fprintf(out, " and disc %" PRIu32, disc);
             fputc('\n', out);
         }
+        print_roulette(step, out);
         radiance = step->radiance;
     }
     if (path->cut) fprintf(out, "       the depth limit cuts the path here\n");
@@ -159,11 +168,18 @@ static json_t *with_discs(json_t *root, uint32_t discs) {
     return NULL;
 }
 
+/* NULL where it was not played. */
+static json_t *roulette_json(const BpPathStep *step) {
+    if (!(step->chance > 0)) return NULL;
+    return json_pack("{s:f, s:b}", "chance", step->chance, "goes_on", !step->ended);
+}
+
 static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
-    json_t *root = json_pack("{s:o, s:o, s:o, s:o, s:b, s:o*}", "origin", bp_json_triple(step->origin),
+    json_t *root = json_pack("{s:o, s:o, s:o, s:o, s:b, s:o*, s:o*}", "origin", bp_json_triple(step->origin),
                              "direction", bp_json_triple(step->direction), "throughput",
                              bp_json_triple(step->throughput), "radiance", bp_json_triple(step->radiance),
-                             "met", step->met, "led", is_black(step->led) ? NULL : bp_json_triple(step->led));
+                             "met", step->met, "led", is_black(step->led) ? NULL : bp_json_triple(step->led),
+                             "roulette", roulette_json(step));
     if (root == NULL) return root;
     if (step->scattered) {
         if (json_object_set_new(root, "scattered", json_true()) == 0 &&

@@ -219,6 +219,9 @@ static BpStatus plan(const BpCommandLine *line, const Job *job, const BpCheckpoi
     if (resumed != NULL) {
         options->caustics = bp_render_caustics(job->scene, options); /* as films have them */
         options->light_sampling = bp_render_light_sampling(job->scene, options);
+        BpRenderOptions as_then = *options;
+        as_then.max_depth = resumed->max_depth;
+        options->roulette = bp_render_roulette(job->scene, &as_then);
         BP_TRY(bp_resume_options(line, resumed, options, err));
     }
     init_rule(line, job->scene, options, rule);

@@ -235,9 +235,10 @@ BpStatus bp_film_check_same(const BpFilm *a, const BpFilm *b, BpError *err) {
         return bp_fail_with(BP_REMEDY_SAME_SEED, err, BP_ERR_USAGE,
                             "seeds differ (%" PRIu64 " and %" PRIu64 ")", a->seed, b->seed);
     BP_SAME(replicates, BP_REMEDY_NONE, "numbers of replicates differ (%" PRId64 " and %" PRId64 ")");
-    BP_SAME(scale_log2, BP_REMEDY_NONE, "fixed-point scales differ (2^%" PRId64 " and 2^%" PRId64 ")");
     BP_SAME(max_depth, BP_REMEDY_SAME_DEPTH, "depths differ (%" PRId64 " and %" PRId64 ")");
     BP_SETTING_LIST(BP_SAME_SETTING)
+    /* It follows from all of these, which say more. */
+    BP_SAME(scale_log2, BP_REMEDY_NONE, "fixed-point scales differ (2^%" PRId64 " and 2^%" PRId64 ")");
     if (a->transfer != b->transfer)
         return bp_fail(err, BP_ERR_USAGE, "transfer curves differ (%s and %s)",
                        bp_transfer_names[a->transfer], bp_transfer_names[b->transfer]);

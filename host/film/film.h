@@ -96,16 +96,17 @@ struct BpFilm {
  * bp_scene_radiance_bound(), within +-126 so that 2^scale is a float. A sample is then at most 2^38 steps,
  * and 2^24 of them are at most 2^62. */
 int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLightSampling light_sampling,
-                      BpCaustics caustics);
+                      BpCaustics caustics, BpRoulette roulette);
 /* An upper bound of the radiance that one path of at most `max_depth` segments can carry: the brightest of
  * sky and lamps, times min(1 / (1 - a), max_depth), where a is the largest albedo of a material that both
  * emits and scatters: 1 + a + a^2 + ... with as many terms as the path has segments. With
  * BP_LIGHT_SAMPLING_ON, each vertex but the last adds half the light of a lamp at most, times what has been
  * scattered so far; with BP_CAUSTICS_ON, up to three times as much more, for the ways through a focuser.
- * Where a lobe weighs more than its albedo (the list of scene/material.h), all that times its largest weight
- * for each vertex. 0 for a black scene. */
+ * With BP_ROULETTE_ON, a path that goes on may carry ROULETTE_LIMIT at each segment from ROULETTE_SEGMENTS
+ * on. Where a lobe weighs more than its albedo (the list of scene/material.h), all that times its largest
+ * weight for each vertex. 0 for a black scene. */
 double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLightSampling light_sampling,
-                               BpCaustics caustics);
+                               BpCaustics caustics, BpRoulette roulette);
 /* A hash of the meaning of the scene: camera, sky, spheres in their order, each with the members of its
  * material. Names, unused materials, members without effect (the fuzz of glass) and the sign of zero change
  * nothing; nor do sample counts and depth, which the film keeps apart. */

@@ -1,6 +1,7 @@
 /* film_scene.c: the scale of a scene's sums, and the hash by which films are compared; see film.h. */
 #include "film.h"
 
+#include "roulette_types.h"
 #include "scene/material.h"
 
 #include <math.h>
@@ -28,9 +29,10 @@ static double shape_albedo(const BpScene *scene, size_t shape) {
                          fmaxf(other[0], fmaxf(other[1], other[2])));
 }
 
-/* 1 + a + a^2 + ... of `terms` terms, or a little more. */
-static double geometric(double a, double terms) {
-    return a < 1 ? fmin(1 / (1 - a), terms) : terms;
+/* 1 + a + a^2 + ... of `terms` terms, or a little more. With roulette, each of the `deep` last ones may be as
+ * large as its limit. */
+static double geometric(double a, double terms, double deep) {
+    return a < 1 ? fmin(1 / (1 - a) + deep * (double)ROULETTE_LIMIT, terms) : terms;
 }
 
 static double angle_between(const double a[3], const double b[3]) {
@@ -66,7 +68,7 @@ static double flight_weight(const BpScene *scene) {
 }
 
 double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLightSampling light_sampling,
-                               BpCaustics caustics) {
+                               BpCaustics caustics, BpRoulette roulette) {
     double brightest = fmax(largest(scene->background_bottom), largest(scene->background_top));
     double brightest_lamp = 0, passed_on = 0, scattered = 0, heaviest = 1;
     if (scene->environment != NULL) brightest = brightest_lamp = largest(scene->environment->bound);
@@ -97,20 +99,22 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLight
         if (bp_medium_scatters(&scene->media[i])) scattered = 1; /* rays go to lamps from there too */
     /* Lobes that weigh more than the albedo do so at every vertex. */
     const double weight = flight_weight(scene) * pow(heaviest, max_depth > 0 ? max_depth - 1 : 0);
-    double bound = weight * brightest * geometric(passed_on, max_depth);
+    const double deep =
+        roulette == BP_ROULETTE_ON && max_depth > ROULETTE_SEGMENTS ? max_depth - ROULETTE_SEGMENTS : 0;
+    double bound = weight * brightest * geometric(passed_on, max_depth, passed_on > 0 ? deep : 0);
     /* A ray to a lamp brings half of its radiance at most, and so does each of the up to three ways through a
      * focuser. To the camera lead up to three through each of three chains. */
     const double focused = caustics == BP_CAUSTICS_ON ? 3 * 0.5 : 0;
     if (light_sampling != BP_LIGHT_SAMPLING_OFF && max_depth >= 2)
         bound += weight * brightest_lamp *
-                 ((0.5 + focused) * scattered * geometric(scattered, max_depth - 1) + 3 * focused);
+                 ((0.5 + focused) * scattered * geometric(scattered, max_depth - 1, deep) + 3 * focused);
     if (scene->backdrop != BP_BACKDROP_COLORS) return bound;
     return fmax(bound, fmax(largest(scene->backdrop_bottom), largest(scene->backdrop_top)));
 }
 
 int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLightSampling light_sampling,
-                      BpCaustics caustics) {
-    const double bound = bp_scene_radiance_bound(scene, max_depth, light_sampling, caustics);
+                      BpCaustics caustics, BpRoulette roulette) {
+    const double bound = bp_scene_radiance_bound(scene, max_depth, light_sampling, caustics, roulette);
     if (!(bound > 0)) return SAMPLE_BITS;
     int exponent = 0;
     const double mantissa = frexp(bound, &exponent); /* bound = mantissa * 2^exponent, 1/2 <= mantissa < 1 */

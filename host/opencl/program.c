@@ -25,6 +25,7 @@ static const struct {
     {"dialect/fused.cl", IN_ALL},
     {"scene_types.h", IN_ALL},
     {"aov_list.h", IN_ALL},
+    {"roulette_types.h", IN_ALL},
     /* for one lane */
     {"dialect/lanes_one.cl", IN_ALL},
     {"dialect/lanes.cl", IN_ALL},
@@ -127,6 +128,7 @@ static const struct {
     {"integrator/background_seen.cl", IN_ALL},
     {"integrator/surface_seen.cl", IN_ALL},
     {"integrator/bounce.cl", IN_ALL},
+    {"integrator/roulette.cl", IN_ALL},
     {"integrator/one_path.cl", IN_SINGLE},
     {"entry/trace_sample.cl", IN_SAMPLE},
     {"entry/trace_pool.cl", IN_POOL},

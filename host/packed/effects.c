@@ -6,6 +6,7 @@
 #include "environment_table.h"
 #include "focusers.h"
 #include "lamp_tree.h"
+#include "roulette_types.h"
 #include "scene/material.h"
 
 #include <math.h>
@@ -361,6 +362,34 @@ static bool explain_smooth_normals(const BpScene *scene, size_t size, char *reas
     return smooth > 0;
 }
 
+/* Whether a path carries exactly as much after it has met a shape as before. */
+static bool passes_all(const BpScene *scene, size_t shape) {
+    const BpMaterial *material = &scene->materials[bp_shape_material(scene, shape)];
+    if (!bp_material_is(material->kind, BP_SCATTERS)) return true;
+    if (material->kind == BP_MATERIAL_DIELECTRIC || material->kind == BP_MATERIAL_INTERFACE) return true;
+    if (material->kind != BP_MATERIAL_LAMBERTIAN && material->kind != BP_MATERIAL_METAL) return false;
+    const double *albedo = material->albedo;
+    return bp_shape_albedo(scene, shape) == BP_NO_ALBEDO && !bp_material_varies(material) &&
+           fmin(albedo[0], fmin(albedo[1], albedo[2])) >= 1;
+}
+
+/* Whether paths may come to carry less. */
+static bool explain_roulette(const BpScene *scene, size_t size, char *reason) {
+    size_t shape = 0, medium = 0;
+    while (shape < bp_scene_shapes(scene) && passes_all(scene, shape)) ++shape;
+    while (medium < scene->medium_count && bp_medium_is_clear(&scene->media[medium])) ++medium;
+    const bool any = shape < bp_scene_shapes(scene) || medium < scene->medium_count;
+    if (!any)
+        snprintf(reason, size, "nothing keeps any light: all paths carry the same");
+    else if (scene->camera.max_depth <= ROULETTE_SEGMENTS)
+        snprintf(reason, size, "paths have at most %u segment%s, and may end from %u on",
+                 (unsigned)scene->camera.max_depth, bp_plural(scene->camera.max_depth), ROULETTE_SEGMENTS);
+    else
+        snprintf(reason, size, "paths of up to %u segments carry less after each of them",
+                 (unsigned)scene->camera.max_depth);
+    return any;
+}
+
 void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     const size_t size = sizeof effects->reason[0];
     Use uses[BP_EFFECT_COUNT], all;
@@ -410,6 +439,7 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
         snprintf(effects->reason[BP_EFFECT_CAUSTICS], size, "no rays are sent to lamps");
     else
         effects->caustics = bp_focusers_explain(scene, size, effects->reason[BP_EFFECT_CAUSTICS]);
+    effects->dims = explain_roulette(scene, size, effects->reason[BP_EFFECT_ROULETTE]);
 }
 
 size_t bp_effect_count(void) {

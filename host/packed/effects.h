@@ -41,7 +41,8 @@
     X(TRIANGLES, "triangles", "triangles beside spheres, or in place of them", "", "")                       \
     X(TRIANGLE_LAMPS, "triangle_lamps", "rays to triangles that emit", "", "")                               \
     X(SMOOTH_NORMALS, "smooth_normals", "triangles that look curved, by normals at their vertices", "", "")  \
-    X(CAPSULES, "capsules", "capsules beside spheres: lines with a radius and round ends", "", "")
+    X(CAPSULES, "capsules", "capsules beside spheres: lines with a radius and round ends", "", "")           \
+    X(ROULETTE, "roulette", "deep paths that carry little end by chance: Russian roulette", "", "")
 
 typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,
@@ -56,6 +57,7 @@ typedef struct BpEffects {
     uint32_t bits;        /* bit e set: effect e is simulated */
     bool triangles_alone; /* and no code for spheres, unless options ask for more */
     bool caustics;        /* CAUSTICS is simulated too, if the options enable it */
+    bool dims;            /* paths may come to carry little: ROULETTE can be simulated */
     char reason[BP_EFFECT_COUNT][160];
 } BpEffects;
 

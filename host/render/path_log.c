@@ -4,6 +4,7 @@
 #include "base/status.h"
 #include "render_plan.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +22,8 @@ enum {
     FOLLOW_INWARD,
     FOLLOW_LIT,
     FOLLOW_LED = FOLLOW_LIT + 3,
-    FOLLOW_REALS = FOLLOW_LED + 3
+    FOLLOW_CHANCE = FOLLOW_LED + 3,
+    FOLLOW_REALS
 };
 
 /* Nobody reads more steps than this; of a longer path, these are shown. */
@@ -100,6 +102,8 @@ static void read_step(const BpScene *scene, const double space[3], const Records
     step->enters = record[FOLLOW_ENTERS] != 0;
     step->goes_on = record[FOLLOW_GOES_ON] != 0;
     step->inward = record[FOLLOW_INWARD] != 0;
+    step->chance = fabs(record[FOLLOW_CHANCE]);
+    step->ended = record[FOLLOW_CHANCE] < 0;
     const cl_uint *spheres = records->spheres + 4 * number;
     step->sphere = spheres[0];
     step->to_lamp = spheres[1] != NO_SPHERE;
@@ -155,7 +159,8 @@ BpStatus bp_path_log(const BpScene *scene, const BpRenderOptions *options, const
     for (size_t i = 0; i < records.count; ++i)
         read_step(scene, space, &records, single_precision, i, &path->steps[i]);
     path->count = records.count;
-    path->cut = path->count == 0 || path->steps[path->count - 1].goes_on;
+    const BpPathStep *last = path->steps + path->count - 1;
+    path->cut = path->count == 0 || (last->goes_on && !last->ended);
     path->device = chosen;
 
 cleanup:

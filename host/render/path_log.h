@@ -18,6 +18,9 @@ typedef struct BpPathStep {
     uint32_t sphere, material; /* numbers in the scene */
     bool enters;               /* met from outside */
     bool goes_on;              /* the surface sent the path on */
+    double chance;             /* roulette then let it go on with this chance, to carry the inverse times as
+                                  much; 0: it was not played */
+    bool ended;                /* and ended it here */
     bool inward;               /* into (or staying in) the inside of the sphere */
     double throughput[3];      /* product of weights after the meeting */
     double radiance[3];        /* collected so far; that of the last step is the sample's */

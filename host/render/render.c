@@ -144,6 +144,7 @@ static BpStatus create(const BpScene *scene, const BpRenderOptions *options, con
     bp_effects_analyse(scene, &made->effects);
     made->options.light_sampling = bp_render_light_sampling_of(&made->effects, options);
     made->options.caustics = bp_render_caustics_of(&made->effects, options);
+    made->options.roulette = bp_render_roulette_of(&made->effects, options);
     /* Where nothing is matte, no rays are sent to lights, and all of them are found by chance. */
     if (options->light_sampling == BP_LIGHT_SAMPLING_ON && !options->samples_only) {
         BP_TRY_GOTO(status, bp_pilot_aim(scene, &made->aim, err), failed);
@@ -373,8 +374,8 @@ uint64_t bp_render_samples_done(const BpRender *render) {
 
 BpStatus bp_render_describe(const BpRender *render, BpFilm *film, BpError *err) {
     const BpRenderOptions *options = &render->options;
-    film->scale_log2 =
-        bp_film_scale(render->scene, options->max_depth, options->light_sampling, options->caustics);
+    film->scale_log2 = bp_film_scale(render->scene, options->max_depth, options->light_sampling,
+                                     options->caustics, options->roulette);
     film->scene_hash = bp_scene_hash(render->scene);
     film->seed = options->seed;
     film->max_depth = options->max_depth;

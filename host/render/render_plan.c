@@ -4,6 +4,7 @@
 #include "base/status.h"
 #include "packed/acceleration.h"
 #include "packed/rounding.h"
+#include "roulette_types.h"
 
 #include <string.h>
 
@@ -49,6 +50,16 @@ BpCaustics bp_render_caustics(const BpScene *scene, const BpRenderOptions *optio
     return bp_render_caustics_of(&effects, options);
 }
 
+BpRoulette bp_render_roulette_of(const BpEffects *effects, const BpRenderOptions *options) {
+    return effects->dims && options->max_depth > ROULETTE_SEGMENTS ? options->roulette : BP_ROULETTE_OFF;
+}
+
+BpRoulette bp_render_roulette(const BpScene *scene, const BpRenderOptions *options) {
+    BpEffects effects;
+    bp_effects_analyse(scene, &effects);
+    return bp_render_roulette_of(&effects, options);
+}
+
 BpLightSampling bp_render_light_sampling(const BpScene *scene, const BpRenderOptions *options) {
     BpEffects effects;
     bp_effects_analyse(scene, &effects);
@@ -59,6 +70,8 @@ static uint32_t choose_effects(const BpEffects *effects, const BpRenderOptions *
     uint32_t wanted =
         options->all_effects ? BP_EFFECTS_ALL : effects->bits | (options->extra_effects & BP_EFFECTS_ALL);
     if (bp_render_caustics_of(effects, options) == BP_CAUSTICS_ON) wanted |= 1u << BP_EFFECT_CAUSTICS;
+    if (options->roulette == BP_ROULETTE_OFF) wanted &= ~(1u << BP_EFFECT_ROULETTE);
+    if (bp_render_roulette_of(effects, options) == BP_ROULETTE_ON) wanted |= 1u << BP_EFFECT_ROULETTE;
     if (options->light_sampling == BP_LIGHT_SAMPLING_OFF)
         wanted &= ~(1u << BP_EFFECT_LAMPS | 1u << BP_EFFECT_CAUSTICS | 1u << BP_EFFECT_TRIANGLE_LAMPS);
     return wanted;
@@ -100,7 +113,8 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
     setup->replicates = options->replicates != 0 ? options->replicates : BP_REPLICATES_DEFAULT;
     const BpCaustics caustics = bp_render_caustics_of(&effects, options);
     setup->scale_log2 =
-        bp_film_scale(scene, options->max_depth, bp_render_light_sampling_of(&effects, options), caustics);
+        bp_film_scale(scene, options->max_depth, bp_render_light_sampling_of(&effects, options), caustics,
+                      bp_render_roulette_of(&effects, options));
     setup->max_depth = options->max_depth;
     setup->seed = options->seed;
     setup->pixel_center = scene->camera.pixel_sampling == BP_PIXEL_CENTER;

@@ -13,6 +13,12 @@ BpCaustics bp_render_caustics(const BpScene *scene, const BpRenderOptions *optio
 /* The same, if the scene's effects are known. */
 BpCaustics bp_render_caustics_of(const BpEffects *effects, const BpRenderOptions *options);
 
+/* Whether deep paths may end by roulette: BP_ROULETTE_OFF too where none can come to carry little, or may be
+ * that deep. */
+BpRoulette bp_render_roulette(const BpScene *scene, const BpRenderOptions *options);
+/* The same, if the scene's effects are known. */
+BpRoulette bp_render_roulette_of(const BpEffects *effects, const BpRenderOptions *options);
+
 /* Whether lamps are sampled: BP_LIGHT_SAMPLING_OFF too where the scene does not call for it. */
 BpLightSampling bp_render_light_sampling(const BpScene *scene, const BpRenderOptions *options);
 /* The same where the scene's effects are known, so that its spheres need not be searched again. */

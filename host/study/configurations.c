@@ -29,6 +29,7 @@ typedef struct Row {
 #define NUMERICS(x) .numerics = (BP_NUMERICS_##x + 1)
 #define LIGHT_SAMPLING(x) .light_sampling = (BP_LIGHT_SAMPLING_##x + 1)
 #define CAUSTICS(x) .caustics = (BP_CAUSTICS_##x + 1)
+#define ROULETTE(x) .roulette = (BP_ROULETTE_##x + 1)
 #define FRESNEL(x) .fresnel = BP_STUDY_FRESNEL_##x
 
 /* One line for each configuration. A new axis that is a setting of base/names.h is a line here; another is
@@ -44,6 +45,8 @@ static const Row rows[] = {
     {"light_sampling", "lamps found by chance", {LIGHT_SAMPLING(OFF)}},
     {"caustics", "rays through focusers", {CAUSTICS(ON)}},
     {"caustics", "caustics found by chance", {CAUSTICS(OFF)}},
+    {"roulette", "roulette for deep paths", {ROULETTE(ON)}},
+    {"roulette", "deep paths traced on", {ROULETTE(OFF)}},
     {"depth", "depth 5", {.depth = 5}},
     {"depth", "depth 10", {.depth = 10}},
     {"depth", "depth 20", {.depth = 20}},
@@ -128,6 +131,8 @@ static bool apply(const Row *row, const BpScene *scene, const BpRenderOptions *b
         return false;
     const BpRenderOptions through = {.caustics = BP_CAUSTICS_ON};
     if (change->caustics > 0 && bp_render_caustics(scene, &through) == BP_CAUSTICS_OFF) return false;
+    const BpRenderOptions played = {.max_depth = options->max_depth, .roulette = BP_ROULETTE_ON};
+    if (change->roulette > 0 && bp_render_roulette(scene, &played) == BP_ROULETTE_OFF) return false;
     if (change->adaptive) options->adaptive = true;
     if (fresnel_matters(scene, change->fresnel)) configuration->fresnel = change->fresnel;
     write_command(scene, configuration);

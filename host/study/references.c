@@ -24,6 +24,7 @@ static BpStatus open_one(BpReferences *references, int r, const BpRenderOptions 
     options.max_depth = BP_STUDY_DEPTH;
     options.precision = BP_PRECISION_DOUBLE;
     options.sampler = BP_SAMPLER_SOBOL;
+    options.roulette = BP_ROULETTE_OFF;
     options.samples_only = true;
     options.seed = references->seed[r];
     options.force = base->force;

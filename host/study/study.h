@@ -24,7 +24,7 @@
 #define BP_STUDY_WIDTH_DEFAULT 240u
 #define BP_STUDY_SECONDS_DEFAULT 60.0
 #define BP_STUDY_DEPTH 1000u /* of the truth */
-#define BP_STUDY_CONFIGURATIONS_MAX 24
+#define BP_STUDY_CONFIGURATIONS_MAX 26
 #define BP_STUDY_LEVELS_MIN 2 /* sample counts; without two there is nothing to compare */
 #define BP_STUDY_LEVELS_MAX 10
 #define BP_STUDY_TARGETS 3

@@ -2,7 +2,7 @@
  *
  * Appended to a program of one lane when someone asks (host/render/path_log.c).
  * In:    the packed scene, a pixel, a sample.   Out: for each segment LOG_REALS numbers, in the order of the enum.
- * Knows: path.cl, bounce.cl, lamps_direct.cl, caustics.cl.   Does not know: how a person wants to read it. */
+ * Knows: path.cl, bounce.cl, lamps_direct.cl, caustics.cl, roulette.cl.   Does not know: how a person wants to read it. */
 enum {
     LOG_ORIGIN,                        /* of the segment, relative to the camera */
     LOG_DIRECTION = LOG_ORIGIN + 3,    /* of the segment */
@@ -17,7 +17,8 @@ enum {
     LOG_INWARD, /* continues inside */
     LOG_LIT,    /* radiance from a lamp to which the vertex sent a ray */
     LOG_LED = LOG_LIT + 3, /* and from one to which it sent rays through a focuser */
-    LOG_REALS = LOG_LED + 3
+    LOG_CHANCE = LOG_LED + 3, /* to go on that roulette gives it after this segment, or 0; negative: it ends */
+    LOG_REALS
 };
 
 /* `spheres`: for each segment s the numbers of three spheres, or NO_SPHERE: what it met; the lamp that the vertex there
@@ -32,6 +33,18 @@ static uint discs_seen(const Scene *scene, const Path *path) {
     }
     return seen;
 }
+#endif
+
+#if EFFECT_ROULETTE
+/* Plays roulette as it is played before the next segment. */
+static real log_roulette(Path *path, uint max_depth) {
+    int played = path->depth < max_depth && is_deep(path);
+    const uint chance = roulette_chance(path, &played);
+    if (played) play_roulette(path);
+    return played ? (real)chance * (path->alive ? R(0x1p-24) : R(-0x1p-24)) : 0;
+}
+#else
+#define log_roulette(path, max_depth) 0
 #endif
 
 __kernel VECTORS_WRITTEN void path_log(SCENE_PARAMETERS uint pixel, uint sample, uint capacity, __global real *records,
@@ -90,6 +103,7 @@ __kernel VECTORS_WRITTEN void path_log(SCENE_PARAMETERS uint pixel, uint sample,
         record[LOG_LED] = led.x - before.x;
         record[LOG_LED + 1] = led.y - before.y;
         record[LOG_LED + 2] = led.z - before.z;
+        record[LOG_CHANCE] = log_roulette(&path, max_depth);
         uint discs = 0;
 #if EFFECT_DISCS
         if (!end->met) discs = discs_seen(&scene, &path);

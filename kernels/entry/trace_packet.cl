@@ -68,6 +68,7 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
             continue;
         }
 #endif
+        play_roulette(&path);
         trace_bounce(&scene, &path);
     }
 }

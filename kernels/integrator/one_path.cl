@@ -19,6 +19,10 @@ static SampleKey sample_of_chunk(TRACE_PARAMETERS, uint number, Vec3 *origin, Ve
 static int path_goes_on(const Path *path, uint max_depth) { return path->alive && path->depth < max_depth; }
 
 static void path_go_on(const Scene *scene, Path *path) {
+    play_roulette(path);
+#if EFFECT_ROULETTE
+    if (!path->alive) return;
+#endif
     trace_bounce(scene, path);
 #if SAMPLES_LAMPS
     if (path->wants_lamps) light_vertices(scene, path);

@@ -12,7 +12,7 @@
  *     k = 0, 1     direction of scattering
  *     k = 2, 3, 4  radius in a ball (fuzz and the cosine-cubed lobe)
  *     k = 5        choice between reflection and refraction
- *     k = 6        roulette (kept)
+ *     k = 6        Russian roulette
  *     k = 7        the low bits of a lamp's choice; for level l of the tree of lamps, 2^24 l further on
  *     k = 8, 9     which lamp, and the direction to it
  *     k = 10       the low bits of the choice among the discs of the sky, the image around and the tree of lamps
@@ -33,6 +33,7 @@
 #define BOUNCE_DIRECTION 0u
 #define BOUNCE_BALL_RADIUS 2u
 #define BOUNCE_CHOICE 5u
+#define BOUNCE_ROULETTE 6u
 #define BOUNCE_LAMP_REFILL 7u
 #define LAMP_REFILL_STRIDE 0x1000000u
 #define BOUNCE_LAMP 8u

@@ -98,7 +98,7 @@ class BpDeviceInfo(c.Structure):
 class BpRenderOptions(c.Structure):
     _fields_ = [("samples_per_pixel", c.c_uint64), ("first_sample", c.c_uint64), ("max_depth", c.c_uint32),
                 ("seed", c.c_uint64), ("precision", c.c_int), ("math", c.c_int), ("numerics", c.c_int),
-                ("sampler", c.c_int), ("light_sampling", c.c_int), ("caustics", c.c_int), ("kernel", c.c_int),
+                ("sampler", c.c_int), ("light_sampling", c.c_int), ("caustics", c.c_int), ("roulette", c.c_int), ("kernel", c.c_int),
                 ("all_effects", c.c_bool), ("extra_effects", c.c_uint32), ("adaptive", c.c_bool), ("features", c.c_bool),
                 ("samples_only", c.c_bool), ("force", c.c_bool), ("job_first", c.c_uint64),
                 ("job_samples", c.c_uint64), ("replicates", c.c_uint32),
@@ -136,7 +136,7 @@ class BpFilmInfo(c.Structure):
                 ("negative_samples", c.c_uint64), ("out_of_range_samples", c.c_uint64), ("shadow_rays", c.c_uint64),
                 ("scene_hash", c.c_uint64), ("seed", c.c_uint64), ("max_depth", c.c_uint32), ("replicates", c.c_uint32),
                 ("sampler", c.c_int), ("precision", c.c_int), ("math", c.c_int), ("numerics", c.c_int),
-                ("light_sampling", c.c_int), ("caustics", c.c_int), ("transfer", c.c_int)]
+                ("light_sampling", c.c_int), ("caustics", c.c_int), ("roulette", c.c_int), ("transfer", c.c_int)]
 
 
 # Their C names are those of the classes.
@@ -152,7 +152,7 @@ FORMATS = ["png", "ppm", "ppm-ascii", "pfm", "exr", "bpa"]
 DEVICE_TYPES = ["cpu", "gpu", "other"]
 CHOICES = {"precision": ["single", "double"], "math": ["strict", "fast"], "numerics": ["robust", "plain"],
            "sampler": ["independent", "sobol"], "light_sampling": ["on", "off"], "caustics": ["auto", "off", "on"],
-           "kernel": ["auto", "sample", "packet", "pool"]}
+           "roulette": ["off", "on"], "kernel": ["auto", "sample", "packet", "pool"]}
 
 _HANDLE = c.POINTER(c.c_void_p)
 _ERR = c.POINTER(BpError)

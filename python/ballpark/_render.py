@@ -96,7 +96,7 @@ class Render:
                  time: typing.Optional[float] = None, seed: int = 0, depth: typing.Optional[int] = None,
                  first_sample: int = 0, device: typing.Union[None, int, str] = None, sampler: str = "sobol",
                  precision: str = "single", math: str = "strict", numerics: str = "robust", light_sampling: str = "on",
-                 caustics: str = "auto", kernel: str = "auto", adaptive: bool = False, aovs: bool = False, threads: int = 0,
+                 caustics: str = "auto", roulette: str = "off", kernel: str = "auto", adaptive: bool = False, aovs: bool = False, threads: int = 0,
                  force: bool = False):
         if not isinstance(scene, Scene):
             raise wrong_type("ballpark.Render", scene, "a Scene, such as ballpark.make_scene() returns")
@@ -108,7 +108,7 @@ class Render:
         options = lib.BpRenderOptions()
         lib.library().bp_render_defaults(scene._handle.pointer, c.byref(options))
         words = {"sampler": sampler, "precision": precision, "math": math, "numerics": numerics, "light_sampling": light_sampling,
-                 "caustics": caustics, "kernel": kernel}
+                 "caustics": caustics, "roulette": roulette, "kernel": kernel}
         for name, word in words.items():
             if word not in lib.CHOICES[name]:
                 raise lib.SceneError(f'{name}: found "{word}", expected one of {", ".join(lib.CHOICES[name])}')

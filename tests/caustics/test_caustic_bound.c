@@ -29,10 +29,10 @@ static double brightest(const BpScene *scene, uint64_t first) {
     if (bp_render_read_film(render, &film, &err) != BP_OK) fail_msg("%s", err.message);
     assert_int_equal(film->invalid_samples, 0);
     assert_int_equal(film->replicates, 4);
-    const double bound =
-        bp_scene_radiance_bound(scene, options.max_depth, BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_ON);
-    assert_int_equal(film->scale_log2,
-                     bp_film_scale(scene, options.max_depth, BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_ON));
+    const double bound = bp_scene_radiance_bound(scene, options.max_depth, BP_LIGHT_SAMPLING_ON,
+                                                 BP_CAUSTICS_ON, BP_ROULETTE_OFF);
+    assert_int_equal(film->scale_log2, bp_film_scale(scene, options.max_depth, BP_LIGHT_SAMPLING_ON,
+                                                     BP_CAUSTICS_ON, BP_ROULETTE_OFF));
     assert_true(ldexp(bound, film->scale_log2) <= 0x1p38);
     const size_t cells = (size_t)film->width * film->height * film->replicates;
     double most = 0;
@@ -83,7 +83,8 @@ static void every_ray_counts(void **state) {
         double most = lamp + 9 * 0.5 * lamp, through = albedo;
         for (uint32_t vertex = 1; vertex < depths[i]; ++vertex, through *= albedo)
             most += (0.5 + 3 * 0.5) * lamp * through;
-        const double bound = bp_scene_radiance_bound(scene, depths[i], BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_ON);
+        const double bound =
+            bp_scene_radiance_bound(scene, depths[i], BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_ON, BP_ROULETTE_OFF);
         assert_true(bound >= most * (1 - 1e-12) && bound <= 2 * most);
     }
     bp_scene_destroy(&scene);

@@ -148,7 +148,7 @@ class Picture(Render):
 class Statistics(Render):
     FIXED = {"scene": str, "width": int, "height": int, "samples_per_pixel": int, "max_depth": int, "seed": int,
              "spheres": int, "device": dict, "effects": list, "kernel": str, "sampler": str,
-             "precision": str, "math": str, "numerics": str, "light_sampling": str, "caustics": str, "seconds": dict, "samples": int, "rays": int,
+             "precision": str, "math": str, "numerics": str, "light_sampling": str, "caustics": str, "roulette": str, "seconds": dict, "samples": int, "rays": int,
              "mean_radiance": list, "nrmse": float, "invalid_samples": int}
 
     def test_names_and_types(self):

@@ -81,6 +81,7 @@ static void wrong_members_are_named(void **state) {
         {", \"alpha\": true", "", "\"alpha\""},
         {"\"light_sampling\"", "\"other\"", "\"light_sampling\""},
         {"\"caustics\"", "\"other\"", "\"caustics\""},
+        {"\"roulette\"", "\"other\"", "\"roulette\""},
         {"\"shadow_rays\"", "\"other\"", "\"shadow_rays\""},
         {"\"negative_samples\"", "\"other\"", "\"negative_samples\""},
         {"\"negative_samples\": 300", "\"negative_samples\": 299", "should be the sum of their causes"},

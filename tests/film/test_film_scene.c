@@ -57,17 +57,19 @@ static void free_scene(BpScene *scene) {
 static void bound_and_scale(void **state) {
     (void)state;
     BpScene scene = make_scene();
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) - 4) <= 0);
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 36);
+    assert_true(
+        fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF) -
+             4) <= 0);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF), 36);
     scene.materials[3].emit[0] = 4.5; /* past a power of two, the next one */
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 35);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF), 35);
     scene.materials[3].emit[0] = 0.5; /* now the lamp's green */
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 37);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF), 37);
     scene.materials[3] = scene.materials[4];
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF),
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF),
                      38); /* sky and normals: 1 */
     scene.background_bottom[2] = 3;
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 36);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF), 36);
     free_scene(&scene);
 }
 
@@ -79,7 +81,7 @@ static BpDisc disc(double x, double y, double half_angle, double radiance) {
 }
 
 static double bound_of(const BpScene *scene, BpLightSampling light_sampling) {
-    return bp_scene_radiance_bound(scene, 50, light_sampling, BP_CAUSTICS_OFF);
+    return bp_scene_radiance_bound(scene, 50, light_sampling, BP_CAUSTICS_OFF, BP_ROULETTE_OFF);
 }
 
 /* Discs that share a direction add up, with the sky behind them; others do not. */
@@ -105,7 +107,8 @@ static void discs_add_up(void **state) {
     for (int vertex = 1; vertex < 50; vertex++, through *= albedo) most += 0.5 * 1000 * through;
     assert_true(bound_of(&scene, BP_LIGHT_SAMPLING_ON) >= most &&
                 bound_of(&scene, BP_LIGHT_SAMPLING_ON) <= 1.5 * most);
-    assert_true(ldexp(most, bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_OFF)) <= 0x1p38);
+    assert_true(ldexp(most, bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_OFF,
+                                          BP_ROULETTE_OFF)) <= 0x1p38);
     free_scene(&scene);
 }
 
@@ -115,21 +118,30 @@ static void emitters_that_scatter_add_up(void **state) {
     BpScene scene = make_scene();
     scene.materials[0].emit[1] = 4;
     scene.materials[0].albedo[2] = 0.5; /* 1 + 1/2 + 1/4 + ... = 2, but one sphere brings 0.625 itself */
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) -
-                     4 / (1 - 0.625)) <= 1e-12);
+    assert_true(
+        fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF) -
+             4 / (1 - 0.625)) <= 1e-12);
     scene.spheres[5].albedo = BP_NO_ALBEDO;
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) - 8) <=
-                1e-12);
+    assert_true(
+        fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF) -
+             8) <= 1e-12);
     scene.materials[5].emit[0] = 100; /* not in use */
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) - 8) <=
-                1e-12);
+    assert_true(
+        fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF) -
+             8) <= 1e-12);
     scene.materials[2].emit[0] = 1; /* glass passes everything on */
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) -
-                     4.0 * 50) <= 0); /* once a segment */
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 38 - 8);
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 1, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) - 4) <= 0);
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 0, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF)) <= 0);
-    assert_true(fabs(bp_scene_radiance_bound(&scene, BP_DEPTH_MAX, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) -
+    assert_true(
+        fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF) -
+             4.0 * 50) <= 0); /* once a segment */
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF),
+                     38 - 8);
+    assert_true(
+        fabs(bp_scene_radiance_bound(&scene, 1, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF) -
+             4) <= 0);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 0, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF,
+                                             BP_ROULETTE_OFF)) <= 0);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, BP_DEPTH_MAX, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF,
+                                             BP_ROULETTE_OFF) -
                      4.0 * BP_DEPTH_MAX) <= 0);
     free_scene(&scene);
 }
@@ -144,11 +156,13 @@ static void no_path_is_brighter(void **state) {
         scene.materials[1].emit[2] = emit;
         double radiance = 0, throughput = 1;
         for (int depth = 0; depth < 50; depth++, throughput *= albedo) radiance += throughput * emit;
-        const double bound = bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF);
+        const double bound =
+            bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF);
         assert_true(radiance <= bound * (1 + 1e-12));
-        assert_true(ldexp(bound, bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF)) <=
-                    0x1p38);
-        assert_true(ldexp(bound, bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF)) > 0x1p37);
+        assert_true(ldexp(bound, bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF,
+                                               BP_ROULETTE_OFF)) <= 0x1p38);
+        assert_true(ldexp(bound, bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF,
+                                               BP_ROULETTE_OFF)) > 0x1p37);
     }
     free_scene(&scene);
 }
@@ -159,11 +173,13 @@ static void extreme_scales_stay_floats(void **state) {
     scene.sphere_count = 0;
     memset(scene.background_bottom, 0, sizeof scene.background_bottom);
     memset(scene.background_top, 0, sizeof scene.background_top);
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 38); /* black */
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF),
+                     38); /* black */
     scene.background_top[0] = 1e-300;
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 126);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF), 126);
     scene.background_top[0] = 1e300;
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), -126);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF),
+                     -126);
     free_scene(&scene);
 }
 
@@ -274,11 +290,39 @@ static void the_hash_sees_every_change(void **state) {
 #undef SEEN
 }
 
+/* A path that goes on by roulette may carry as much as the limit of it, again and again: none brings more
+ * than the bound. */
+static void roulette_adds_up(void **state) {
+    (void)state;
+    static const uint32_t depths[] = {1, 8, 9, 50, 1000};
+    BpScene scene = make_scene();
+    scene.spheres[5].albedo = BP_NO_ALBEDO;
+    BpMaterial *shining = &scene.materials[scene.spheres[0].material];
+    shining->kind = BP_MATERIAL_LAMBERTIAN;
+    for (int c = 0; c < 3; ++c) shining->emit[c] = 4, shining->albedo[c] = 0.5;
+    for (size_t i = 0; i < sizeof depths / sizeof *depths; ++i) {
+        /* Each segment meets light; from the eighth on, roulette makes a 64th of what is less. */
+        double most = 0, carried = 1;
+        for (uint32_t segment = 0; segment < depths[i]; ++segment, carried *= 0.5) {
+            if (segment >= 8 && carried < 1.0 / 64) carried = 1.0 / 64;
+            most += 4 * carried;
+        }
+        const double off = bp_scene_radiance_bound(&scene, depths[i], BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF,
+                                                   BP_ROULETTE_OFF);
+        const double on = bp_scene_radiance_bound(&scene, depths[i], BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF,
+                                                  BP_ROULETTE_ON);
+        assert_true(on >= most && on <= most + 0.5);
+        assert_true(depths[i] > 8 ? on > off : fabs(on - off) <= 0);
+    }
+    free_scene(&scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bound_and_scale),
         cmocka_unit_test(discs_add_up),
         cmocka_unit_test(emitters_that_scatter_add_up),
+        cmocka_unit_test(roulette_adds_up),
         cmocka_unit_test(no_path_is_brighter),
         cmocka_unit_test(extreme_scales_stay_floats),
         cmocka_unit_test(the_hash_keeps_to_the_meaning),

@@ -32,7 +32,7 @@ class SceneInfo(c.Structure):
 class RenderOptions(c.Structure):
     _fields_ = [("samples_per_pixel", c.c_uint64), ("first_sample", c.c_uint64), ("max_depth", c.c_uint32),
                 ("seed", c.c_uint64), ("precision", c.c_int), ("math", c.c_int), ("numerics", c.c_int),
-                ("sampler", c.c_int), ("light_sampling", c.c_int), ("caustics", c.c_int), ("kernel", c.c_int), ("all_effects", c.c_bool),
+                ("sampler", c.c_int), ("light_sampling", c.c_int), ("caustics", c.c_int), ("roulette", c.c_int), ("kernel", c.c_int), ("all_effects", c.c_bool),
                 ("extra_effects", c.c_uint32), ("adaptive", c.c_bool), ("features", c.c_bool), ("samples_only", c.c_bool), ("force", c.c_bool),
                 ("job_first", c.c_uint64), ("job_samples", c.c_uint64), ("replicates", c.c_uint32),
                 ("threads", c.c_uint32), ("chunk_samples", c.c_uint32), ("local_size", c.c_uint32), ("tree_width", c.c_uint32),

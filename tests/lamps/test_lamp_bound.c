@@ -20,14 +20,19 @@ static void lamp_rays_add_up(void **state) {
         double most = lamp, through = albedo; /* the path's own end at a lamp counts whole at most */
         for (uint32_t vertex = 1; vertex < depths[i]; ++vertex, through *= albedo)
             most += 0.5 * lamp * through;
-        const double bound = bp_scene_radiance_bound(scene, depths[i], BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_OFF);
+        const double bound =
+            bp_scene_radiance_bound(scene, depths[i], BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_OFF, BP_ROULETTE_OFF);
         assert_true(bound >= most * (1 - 1e-12) && bound <= 2 * most);
-        assert_true(ldexp(bound, bp_film_scale(scene, depths[i], BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_OFF)) <=
-                    0x1p38);
+        assert_true(ldexp(bound, bp_film_scale(scene, depths[i], BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_OFF,
+                                               BP_ROULETTE_OFF)) <= 0x1p38);
     }
     /* Without a vertex to be lit, nothing is added. */
-    assert_true(fabs(bp_scene_radiance_bound(scene, 1, BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_OFF) - lamp) <= 0);
-    assert_true(fabs(bp_scene_radiance_bound(scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) - lamp) <= 0);
+    assert_true(
+        fabs(bp_scene_radiance_bound(scene, 1, BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_OFF, BP_ROULETTE_OFF) -
+             lamp) <= 0);
+    assert_true(
+        fabs(bp_scene_radiance_bound(scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF, BP_ROULETTE_OFF) -
+             lamp) <= 0);
     bp_scene_destroy(&scene);
 }
 

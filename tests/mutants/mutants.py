@@ -72,6 +72,11 @@ def closed_pictures(*names):
     return Script("tests/agree/test_closed_pictures.py", tuple(f"ClosedPictures.test_{name}" for name in names), "4 closed forms")
 
 
+def roulette(*names):
+    """Cases of tests/agree/test_roulette.py."""
+    return Script("tests/agree/test_roulette.py", names, "4 closed forms")
+
+
 def media_cases(*names):
     """Cases of tests/media/test_media.py."""
     return Script("tests/media/test_media.py", names, "9 media")
@@ -782,6 +787,44 @@ MUTANTS = [
            [patch(KERNEL, "scatter4_1((a).y, (b).y, (c).y, (d).y, (place).y, base), scatter4_1((a).x, (b).x, (c).x, (d).x, (place).x, base)",
                   "scatter4_1((a).x, (b).x, (c).x, (d).x, (place).x, base), scatter4_1((a).y, (b).y, (c).y, (d).y, (place).y, base)")],
            [Script("tests/cli/test_cli_render.py", ("Picture.test_fewer_samples_than_lanes",), "1 exact")]),
+    Mutant("roulette-unpaid", "classic: those that go on carry no more",
+           [patch(KERNEL, "scale3(divide(splat(R(0x1p24)), uint_to_real(chance)), path->throughput)", "path->throughput")],
+           [roulette("rooms")]),
+    Mutant("roulette-by-another-colour", "the least of the colours decides",
+           [patch(KERNEL, "return at_least(at_least(path->throughput.x, path->throughput.y), path->throughput.z);",
+                  "return at_most(at_most(path->throughput.x, path->throughput.y), path->throughput.z);")], [roulette("chances")]),
+    Mutant("roulette-by-two-colours", "blue is forgotten where there are media",
+           [patch(KERNEL, "return at_least(at_least(without_flights(carried.x, likelihood.x), without_flights(carried.y, likelihood.y)),",
+                  "return at_least(at_least(without_flights(carried.y, likelihood.y), splat(0)),")], [roulette("chances")]),
+    Mutant("roulette-with-the-weight-of-flights", "own: samples out of the range of the film",
+           [patch(KERNEL, "choose(told, divide(throughput, choose(told, likelihood, splat(1))), splat(1))", "throughput")],
+           [roulette("chances")]),
+    Mutant("roulette-before-the-light-of-its-vertex", "rays to lamps carry more, or are not sent",
+           [patch(KERNEL, "    play_roulette(path);\n#if EFFECT_ROULETTE\n    if (!path->alive) return;\n#endif\n    trace_bounce(scene, path);\n",
+                  "    trace_bounce(scene, path);\n    play_roulette(path);\n")], [roulette("forms")]),
+    Mutant("roulette-by-the-numbers-of-directions", "own: a dimension that two choices share",
+           [patch(KERNEL, "#define BOUNCE_ROULETTE 6u", "#define BOUNCE_ROULETTE 0u")], [roulette("chances")]),
+    Mutant("roulette-chance-rounded-down", "paths that carry next to nothing always end",
+           [patch(KERNEL, "* (R(0x1p24) / ROULETTE_LIMIT)) + 1u,", "* (R(0x1p24) / ROULETTE_LIMIT)),")], [roulette("chances")]),
+    Mutant("roulette-turned-round", "the unlikely ones go on",
+           [patch(KERNEL, "vbool_of_uint(number >= chance)", "vbool_of_uint(number < chance)")], [roulette("rooms")]),
+    Mutant("roulette-a-segment-late", "own",
+           [patch(KERNEL, "path->depth >= splat_uint(ROULETTE_SEGMENTS)", "path->depth > splat_uint(ROULETTE_SEGMENTS)")],
+           [roulette("chances")]),
+    Mutant("roulette-for-packets-alone", "own: forms that draw different pictures",
+           [patch(KERNEL, "    play_roulette(path);\n#if EFFECT_ROULETTE\n    if (!path->alive) return;\n#endif\n", "")], [roulette("forms")]),
+    Mutant("roulette-unasked", "own: the general kernel plays it always",
+           [patch("host/render/render_plan.c", "if (options->roulette == BP_ROULETTE_OFF) wanted &= ~(1u << BP_EFFECT_ROULETTE);", "")],
+           [roulette("forms")]),
+    Mutant("roulette-recorded-where-it-is-not-played", "own: films of the same samples do not merge",
+           [patch("host/render/render_plan.c", "effects->dims && options->max_depth > ROULETTE_SEGMENTS ?", "effects->dims ?")],
+           [roulette("where_it_has_no_effect")]),
+    Mutant("roulette-where-all-is-passed-on", "own: a film is told apart that is the same",
+           [patch("host/packed/effects.c", "fmin(albedo[0], fmin(albedo[1], albedo[2])) >= 1;", "false;")],
+           [roulette("where_it_has_no_effect")]),
+    Mutant("bound-without-roulette", "own: a film whose sums may overflow",
+           [patch("host/film/film_scene.c", "fmin(1 / (1 - a) + deep * (double)ROULETTE_LIMIT, terms)", "fmin(1 / (1 - a), terms)")],
+           [test("test_film_scene", "roulette_adds_up")]),
     Mutant("roulette without 1/p", "classic: 5 % of paths end unpaid",
            [patch(KERNEL, "path->alive = path->alive & (bsdf_sample->scattered | vbool_not(met));",
                   "path->alive = path->alive & ((bsdf_sample->scattered & (uniform(path->key, path->depth * "
@@ -806,10 +849,10 @@ MUTANTS = [
     Mutant("a thousandth of green lost in the sums", "seen by comparing the picture with its samples only",
            [patch(KERNEL, "total[1] += sum.y;", "total[1] += sum.y - sum.y / 1000;")], [check("furnace", 64)]),
     Mutant("the bound at any depth", "a scale for a million bounces",
-           [patch("host/film/film_scene.c", "brightest * geometric(passed_on, max_depth)",
-                  "brightest * geometric(passed_on, BP_DEPTH_MAX)")], [test("test_film_scene", "emitters_that_scatter_add_up")]),
+           [patch("host/film/film_scene.c", "brightest * geometric(passed_on, max_depth,",
+                  "brightest * geometric(passed_on, BP_DEPTH_MAX,")], [test("test_film_scene", "emitters_that_scatter_add_up")]),
     Mutant("the bound for one bounce", "bright samples taken for invalid ones",
-           [patch("host/film/film_scene.c", "brightest * geometric(passed_on, max_depth)", "brightest")],
+           [patch("host/film/film_scene.c", "brightest * geometric(passed_on, max_depth, passed_on > 0 ? deep : 0)", "brightest")],
            [test("test_film_scene", "emitters_that_scatter_add_up")]),
     Mutant("a checksum of the header alone", ".bpa files with flipped bits",
            [patch("host/film/film_stream.c", "    source->checksum = crc32_z(source->checksum, bytes, size);\n", ""),

@@ -44,7 +44,7 @@ arguments = {name for function in (ballpark.render, ballpark.Render, ballpark.Pi
 members = set(re.findall(r"(\w+);", re.search(r"typedef struct BpRenderOptions \{(.*?)\}", header, re.S).group(1)))
 functions = set(re.findall(r"BP_API [\w ]+[ *](bp_\w+)\(", header))
 settings = re.findall(r"X\(\w+, (\w+), \"", (host / "base/names.h").read_text())
-assert len(settings) == 6 and "light_sampling" in settings
+assert len(settings) == 7 and "light_sampling" in settings
 
 
 def check(remedy, value):

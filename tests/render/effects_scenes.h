@@ -47,6 +47,7 @@ static const CoveringRule effects_rules[] = {
     {EFFECT_BIT(LAMPS), EFFECTS_LIGHTS},
     {EFFECT_BIT(LAMPS), EFFECTS_LIT},
     {EFFECT_BIT(CAUSTICS), 0}, /* only where it is asked for: tests/lamps */
+    {EFFECT_BIT(ROULETTE), 0}, /* likewise */
     /* A tree needs spheres, and spheres need a material. Textures are of spheres, and spheres move. */
     {EFFECTS_TREE, MATERIAL_EFFECTS},
     {EFFECT_BIT(TEXTURES), MATERIAL_EFFECTS},

@@ -204,6 +204,7 @@ static bool check_scene(Lab *lab, const BpScene *scene, uint32_t bits, bool tree
     if (options.samples_per_pixel > SAMPLES_MAX) options.samples_per_pixel = SAMPLES_MAX;
     options.kernel = packet ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
     options.light_sampling = lamps_off ? BP_LIGHT_SAMPLING_OFF : BP_LIGHT_SAMPLING_ON;
+    options.roulette = BP_ROULETTE_ON;
     options.seed = 20 + bits + (tree ? BP_EFFECTS_ALL + 1 : 0);
     options.sampler = packet != tree ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT; /* both in either form */
     BpProgram **all = &lab->general[packet][tree][lamps_off];

@@ -50,6 +50,7 @@ MARKS = {
     "SMOOTH_NORMALS": [],  # TOGETHER
     "TRIANGLES": ["triangle_decide", "load_triangle", "first_triangles", "coloured_slots"],
     "CAPSULES": ["choose_ball", "capsule_is_candidate", "leaf_axes", "be_sphere"],
+    "ROULETTE": ["roulette_chance"],
     "SHADOW_CATCHER": ["meets_catcher", "light_of_catcher", "lies_in_shadow"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }

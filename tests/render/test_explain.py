@@ -15,7 +15,7 @@ from pfm import read_pfm
 
 program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
 ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "oren_nayar", "rough_metal", "glossy", "rough_dielectric", "lens", "light_sampling", "discs", "textures", "noise", "images", "environment",
-       "motion", "media", "shadow_catcher", "caustics", "triangles", "triangle_lamps", "smooth_normals", "capsules"]
+       "motion", "media", "shadow_catcher", "caustics", "triangles", "triangle_lamps", "smooth_normals", "capsules", "roulette"]
 
 
 def run(*arguments, code=0):

@@ -60,7 +60,7 @@ OPTIONS = {"lighting": ("lighting", set()), "projection": ("camera projection", 
            "fresnel": ("material fresnel", {"none"})}
 # Python's lists, and the enumerations of ballpark.h whose values they count.
 ENUMERATIONS = {"transfer": "BpTransfer", "format": "BpFormat", "device type": "BpDeviceType", "precision": "BpPrecision", "math": "BpMath",
-                "numerics": "BpNumerics", "sampler": "BpSampler", "light_sampling": "BpLightSampling", "caustics": "BpCaustics",
+                "numerics": "BpNumerics", "sampler": "BpSampler", "light_sampling": "BpLightSampling", "caustics": "BpCaustics", "roulette": "BpRoulette",
                 "kernel": "BpKernelForm"}
 
 

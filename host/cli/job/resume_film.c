@@ -75,6 +75,7 @@ BpStatus bp_resume_options(const BpCommandLine *line, const BpFilm *film, BpRend
 #define SETTING_OPTION_numerics BP_OPTION_NUMERICS
 #define SETTING_OPTION_light_sampling BP_OPTION_LIGHT_SAMPLING
 #define SETTING_OPTION_caustics BP_OPTION_CAUSTICS
+#define SETTING_OPTION_roulette BP_OPTION_ROULETTE
 #define TAKE(type, member, option, plural)                                                                   \
     if (bp_option_given(line, SETTING_OPTION_##member) && options->member != film->member) {                 \
         snprintf(has, sizeof has, "has --" option " %s", bp_##member##_names[film->member]);                 \

@@ -134,6 +134,9 @@ enum {
                   "on: rays to lamps go through balls of glass and off mirrors, too; auto: where they take " \
                   "away more noise than their time costs",                                                   \
                   BpCaustics, caustics, BP_CHOICE("", bp_caustics_names, 0))                                 \
+    RENDER_OPTION(ROULETTE, "roulette", 0, BP_TRACERS,                                                       \
+                  "on: deep paths that carry little end by chance, and the others stand for them",           \
+                  BpRoulette, roulette, BP_CHOICE("", bp_roulette_names, 0))                                 \
     RENDER_OPTION(ADAPTIVE, "adaptive", 0, BP_RENDER,                                                        \
                   "give noisy pixels more samples and the others fewer; --spp is then the mean", bool,       \
                   adaptive, BP_FLAG)                                                                         \
@@ -229,6 +232,7 @@ enum {
     NOTE(LIGHT_SAMPLING, BP_CHECK, NULL, "both are checked")                                                 \
     NOTE(CAUSTICS, BP_TRACERS, NULL, "auto")                                                                 \
     NOTE(CAUSTICS, BP_CHECK, NULL, "both are checked")                                                       \
+    NOTE(ROULETTE, BP_TRACERS, NULL, "off")                                                                  \
     NOTE(CAUSTICS, BP_VIEW, NULL, "off")                                                                     \
     NOTE(SPP, BP_RENDER, NULL, "the scene's number")                                                         \
     NOTE(SPP, BP_CHECK, NULL, "1024")                                                                        \
