@@ -11,7 +11,7 @@ import os
 import shlex
 import subprocess
 
-from mutants import Check, Program, Script, Test
+from mutants import Check, Lister, Program, Script, Test
 
 PARTS = 8
 
@@ -63,8 +63,8 @@ class Fingerprints:
             return [f"{'scenes' if book else 'tests/agree/scenes'}/{trial.scene.removeprefix('book:')}.json"]
         if isinstance(trial, Script):
             return [trial.path]
-        assert isinstance(trial, (Program, Test)), trial
-        return sorted(self.sources_of[trial.program])
+        assert isinstance(trial, (Lister, Program, Test)), trial
+        return sorted(self.sources_of[trial.program]) + ([trial.path] if isinstance(trial, Lister) else [])
 
     def of(self, mutant, patched):
         """`patched`: the paths of the files that the mutant's patches change."""
