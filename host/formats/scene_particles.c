@@ -20,7 +20,7 @@ typedef struct Entry {
     char *text; /* as JSON, owned */
 } Entry;
 
-static void keep_legend(const BpParticleStyle *style, const double range[2], BpScene *scene) {
+static void keep_range(const BpParticleStyle *style, const double range[2], BpScene *scene) {
     enum { STOPS = sizeof scene->legend.colors / sizeof scene->legend.colors[0] };
     scene->has_color_range = true;
     memcpy(scene->color_range, range, sizeof scene->color_range);
@@ -46,7 +46,7 @@ static BpStatus add_particles(BpParticleFile *file, const char *path, const Entr
                                            sizeof summary, range, err);
         if (status == BP_ERR_SCENE) bp_error_at(err, path, 0, 0);
     }
-    if (status == BP_OK && entry->style.color_by == BP_COLOR_COLUMN) keep_legend(&entry->style, range, scene);
+    if (status == BP_OK && entry->style.color_by == BP_COLOR_COLUMN) keep_range(&entry->style, range, scene);
     if (status == BP_OK && !particles.flat) scene->up = particles.up;
     if (status == BP_OK && particles.flat) scene->flat = true;
     bp_particles_clear(&particles);

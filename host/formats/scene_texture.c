@@ -40,7 +40,7 @@ static BpStatus parse_repeat(const BpNode *node, uint32_t repeat[2], BpError *er
 
 /* Which textures have a member: those of types that have what BP_TEXTURE_COLORS and its like name, or these.
  */
-enum { OF_SOLID = 16, OF_SURFACE = 32, OF_WAVES = 64 };
+enum { OF_SOLID = BP_TEXTURE_TRAITS_END, OF_SURFACE = 2 * OF_SOLID, OF_WAVES = 4 * OF_SOLID };
 
 static unsigned sorts_of(const BpTexture *texture) {
     const unsigned mapping = texture->mapping == BP_MAPPING_SOLID ? OF_SOLID : OF_SURFACE;

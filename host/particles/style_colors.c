@@ -128,11 +128,11 @@ BpStatus bp_style_choose_colors(BpStyleJob *job, BpError *err) {
     job->color_by = style->color_by;
     if (style->color_by == BP_COLOR_AUTO && p->color == NULL)
         job->color_by = p->has_element ? BP_COLOR_ELEMENT : p->has_type ? BP_COLOR_TYPE : BP_COLOR_CONSTANT;
-    const bool has = (style->color_by == BP_COLOR_ELEMENT && !p->has_element) ||
+    const bool lacks = (style->color_by == BP_COLOR_ELEMENT && !p->has_element) ||
                      (style->color_by == BP_COLOR_CHAIN && !p->has_chain) ||
                      (style->color_by == BP_COLOR_RESIDUE && !p->has_residue) ||
                      (style->color_by == BP_COLOR_TYPE && !p->has_type);
-    if (has)
+    if (lacks)
         return bp_fail(err, BP_ERR_SCENE, "found no %s in the file, expected them for colours",
                        color_names[style->color_by]);
     if (job->color_by == BP_COLOR_CHAIN || job->color_by == BP_COLOR_RESIDUE ||

@@ -56,7 +56,8 @@ enum {
     BP_TEXTURE_COLORS = 1,  /* colors[0] and colors[1], between which its values lie */
     BP_TEXTURE_MAPPING = 2, /* documents choose the mapping; without, it is that of the list */
     BP_TEXTURE_PATTERN = 4, /* a pattern of noise, with octaves and a seed */
-    BP_TEXTURE_FILE = 8     /* an image */
+    BP_TEXTURE_FILE = 8,    /* an image */
+    BP_TEXTURE_TRAITS_END = 16
 };
 
 /* X(identifier, name, effect, what it has, mapping): all that is known of a type by its name alone. The

@@ -46,15 +46,17 @@ static const BpMaterial debug = {.name = (char *)"debug", .kind = BP_MATERIAL_NO
 static BpTexture both[2] = {{.type = BP_TEXTURE_CHECKER, .colors = {{0, 0, 0}, {2, 2, 2}}},
                             {.type = BP_TEXTURE_NOISE, .colors = {{0, 0, 0}, {2, 2, 2}}}};
 
+enum { MATERIALS_MAX = 32 };
+
 /* The effects of a scene under a constant sky and a pinhole, with `spheres` spheres that have the first
  * `used` of the materials in turn. */
 static BpEffects analyse(const BpMaterial *materials, size_t count, size_t used, size_t spheres, double lens,
                          double top_blue) {
-    BpMaterial copy[9];
+    BpMaterial copy[MATERIALS_MAX];
     BpSphere *list = calloc(spheres + 1, sizeof *list);
     BpEffects effects;
     assert_non_null(list);
-    assert_true(count <= 9);
+    assert_true(count <= MATERIALS_MAX);
     if (count > 0) memcpy(copy, materials, count * sizeof *copy);
     for (size_t i = 0; i < spheres; ++i)
         list[i] = (BpSphere){.radius = 1, .material = (uint32_t)(i % used), .albedo = BP_NO_ALBEDO};
@@ -115,8 +117,10 @@ static void material_effects(void **state) {
                          BIT(ROUGH_DIELECTRIC) | BIT(EMISSION) | (i == 3 ? BIT(LAMPS) : 0));
     }
     const BpMaterial all[] = {grey, steel, glass, ember, debug, clay, brass, billiard, frosted};
-    assert_int_equal(analyse(all, 9, 9, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits, BP_EFFECTS_ALL & ~OF_SCENES);
-    assert_int_equal(analyse(all, 9, 9, 9, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS) & ~OF_SCENES);
+    const size_t count = sizeof all / sizeof all[0];
+    assert_int_equal(analyse(all, count, count, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits,
+                     BP_EFFECTS_ALL & ~OF_SCENES);
+    assert_int_equal(analyse(all, count, count, count, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS) & ~OF_SCENES);
 }
 
 static void only_materials_in_use_count(void **state) {

@@ -25,6 +25,16 @@ if clang is None:
 header = pathlib.Path(__file__).parents[2] / "host/packed/effects.h"
 BITS = re.findall(r"^ +X\(([A-Z_]+), \"", header.read_text(), re.MULTILINE)
 
+
+def effects_of(path, name):
+    """The effects that a macro of a source names."""
+    text = (pathlib.Path(__file__).parents[2] / path).read_text().replace("\\\n", " ")
+    return set(re.findall(r"EFFECT_(?:BIT\()?([A-Z_]+)", re.search(rf"#define {name} +(.+)", text).group(1)))
+
+
+# What rays to lamps light, and media.
+LIT = effects_of("kernels/dialect/real.cl", "IS_LIT")
+
 # Words that stand in the code of one effect and nowhere else.
 MARKS = {
     "LAMBERTIAN": ["lambertian_sample", "hemisphere"],
@@ -68,8 +78,7 @@ TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURE
             "image_texture": {"TEXTURES", "IMAGES"}, " TriangleView": {"TRIANGLES", "TRIANGLE_LAMPS"},
             "smooth_surface": {"TRIANGLES", "SMOOTH_NORMALS"}, "scatter_folded": {"TRIANGLES", "SMOOTH_NORMALS"},
             "normal_leaves": {"TRIANGLES", "SMOOTH_NORMALS"}, "Shares": {"TRIANGLES", "SMOOTH_NORMALS"}}
-# Code that needs LAMPS, something to be lit, and one of the effects named.
-LIT = {"LAMBERTIAN", "METAL", "MEDIA", "OREN_NAYAR", "ROUGH_METAL", "GLOSSY", "ROUGH_DIELECTRIC"}
+# Code that needs LAMPS, something to be lit (IS_LIT of dialect/real.cl), and one of the effects named.
 NEEDING_OTHERS = {
     "choose_lamp": {"EMISSION"}, "lamp_hit_weight": {"EMISSION"}, "disc_importance": {"DISCS"}, "disc_hit_weight": {"DISCS"},
     "choose_disc": {"DISCS", "ENVIRONMENT"}, "sample_environment": {"ENVIRONMENT"}, "environment_hit_weight": {"ENVIRONMENT"},
@@ -133,6 +142,15 @@ def spheres_in(path):
 
 
 assert set(BITS) | {"TREE"} == set(MARKS), f"effects.h lists {BITS}: give each its marks here"
+# A material that the host takes for lit must be lit by the kernel, or it costs noise, which no picture tells from the right one.
+materials = (pathlib.Path(__file__).parents[2] / "host/scene/material.c").read_text()
+lit = re.findall(r"kind == BP_MATERIAL_([A-Z_]+)", re.search(r"bool bp_material_is_lit\(.*?\n}", materials, re.DOTALL).group())
+assert set(lit) == LIT - {"MEDIA"}, f"bp_material_is_lit() of scene/material.c has {sorted(lit)}, IS_LIT of dialect/real.cl {sorted(LIT)}"
+listed = effects_of("tests/render/effects_scenes.h", "EFFECTS_LIT")
+assert listed == LIT, f"EFFECTS_LIT of effects_scenes.h has {sorted(listed)}, IS_LIT of dialect/real.cl {sorted(LIT)}"
+kinds = re.findall(r"X\([A-Z_]+, \"[a-z_]+\", [A-Z_]+, ([A-Z_]+),", (header.parents[1] / "scene/material.h").read_text())
+counted = effects_of("kernels/bsdf/scatter.cl", "KIND_COUNT")
+assert set(kinds) == counted, f"KIND_COUNT of bsdf/scatter.cl has {sorted(counted)}, the list of scene/material.h {sorted(set(kinds))}"
 # Tests of equality compare what is traced; what sums it is the same text in every program.
 accumulate = (pathlib.Path(__file__).parents[2] / "kernels/film/accumulate.cl").read_text()
 assert "__kernel" in accumulate and "EFFECT_" not in accumulate and "LANE" not in accumulate, \

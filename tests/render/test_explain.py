@@ -7,6 +7,7 @@ Usage: test_explain.py BALLPARK SCENES [--measure]
 
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -14,8 +15,8 @@ import tempfile
 from pfm import read_pfm
 
 program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
-ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "oren_nayar", "rough_metal", "glossy", "rough_dielectric", "lens", "light_sampling", "discs", "textures", "noise", "images", "environment",
-       "motion", "media", "shadow_catcher", "caustics", "triangles", "triangle_lamps", "smooth_normals", "capsules", "roulette"]
+# By their one list.
+ALL = re.findall(r"^ +X\([A-Z_]+, \"([a-z_]+)\"", (scenes.parent / "host/packed/effects.h").read_text(), re.MULTILINE)
 
 
 def run(*arguments, code=0):

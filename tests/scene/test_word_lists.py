@@ -110,7 +110,9 @@ class Words(cli.ProgramTest):
             expected = set(self.words_of(members))
             self.assertGreater(len(expected), 1, place)
             for words in self.schema[place]:
-                self.assertEqual(words, expected, (place, members))
+                where = f"scenes/scene.schema.json, {place}"
+                self.assertEqual(sorted(expected - words), [], f"{where}: add these to its enum, and entries to its oneOf if it has one")
+                self.assertEqual(sorted(words - expected), [], f"{where}: no reader knows these")
 
     def test_no_list_is_forgotten(self):
         calls = set()
