@@ -404,6 +404,27 @@ class Scenes(ProgramTest):
         self.write("x.json", scene())
         self.fail_with(2, "render", "x.json", "--frames", "::", says="no particles")
 
+    def test_one_camera_for_the_bonds_of_all_frames(self):
+        """Where each frame's bond, wider than its atoms, is seen follows from what all frames' bonds take: seen along z without
+        perspective, their box, with the margin around it, fills the height of the picture."""
+        frames, radius, margin = (((0, 0), (1.4, 0)), ((3, 1), (3, 2.4)), ((1, 1.5), (1, 1.5 + 1.2))), 0.9, 0.1
+        self.write("run.xyz", "".join("2\n\n" + "".join(f"C {x} {y} 0\n" for x, y in frame) for frame in frames))
+        self.document_with({"file": "run.xyz", "radius": 0.2, "color": [0, 0, 0], "bonds": {"radius": radius}}, background=[1, 1, 1],
+                           camera={"image_width": 240, "aspect_ratio": 1.5, "projection": "orthographic", "fit": "particles", "view": "front",
+                                   "margin": margin})
+        self.succeed("render", "x.json", "-q", "--spp", 4, "--frames", "::", "-o", "f.pfm")
+        ends = [end for frame in frames for end in frame]
+        low, high = ([pick(end[a] for end in ends) + way * radius for a in range(2)] for pick, way in ((min, -1), (max, 1)))
+        scale = 160 * (1 - 2 * margin) / (high[1] - low[1])  # pixels for a unit
+        self.assertLess(scale * (high[0] - low[0]), 240 * (1 - 2 * margin))
+        for number, frame in enumerate(frames):
+            width, height, values = read_pfm(self.read(f"f-{number:04d}.pfm"))
+            dark = [(i % width, i // width) for i in range(width * height) if values[3 * i] < 0.5]
+            for a, middle in ((0, width / 2), (1, height / 2)):
+                for pick, way in ((min, -1), (max, 1)):
+                    expected = middle + scale * (pick(end[a] for end in frame) + way * radius - (low[a] + high[a]) / 2)
+                    self.assertAlmostEqual(pick(pixel[a] for pixel in dark) + 0.5, expected - way * 0.5, delta=1.01, msg=f"frame {number}, axis {a}")
+
     def test_one_camera_and_range_for_all_frames(self):
         self.write("run.dump", dump([[(1, 1, 1), (2, 2, 2)], [(8, 8, 8), (2, 2, 2)]]))
         entry = {"file": "run.dump", "radius": 0.5, "color": {"column": "heat"}}
