@@ -271,7 +271,7 @@ typedef struct BpSceneInfo {
     size_t spheres, materials;
     BpTransfer transfer;
     size_t triangles; /* those of quads and boxes too */
-    size_t capsules;
+    size_t capsules;  /* bonds, the edges of cells, and lines from arrays */
 } BpSceneInfo;
 BP_API void bp_scene_info(const BpScene *scene, BpSceneInfo *info);
 

@@ -44,9 +44,11 @@ class Lines:
 
     def _pairs(self) -> typing.Optional[Array]:
         """(N, 2), the numbers of points; None: `lines` are points."""
-        pairs, mask = read(self.lines, "lines", "ends of lines")
         if self.vertices is None:
             return None
+        pairs, mask = read(self.lines, "lines", "numbers of vertices")
+        if pairs.shape == (0,):  # an empty list
+            return np.empty((0, 2), np.intp)
         if pairs.ndim != 2 or pairs.shape[1] != 2:
             hint = "; transpose it, as in lines.T" if pairs.ndim == 2 and pairs.shape[0] == 2 else ""
             raise lib.SceneError(f"lines: found an array of shape {pairs.shape}, expected (N, 2) beside vertices{hint}")
@@ -66,6 +68,8 @@ class Lines:
         """(N, 2, 3), all of them finite."""
         if pairs is None:
             ends = floats(self.lines, "lines")
+            if ends.shape == (0,):
+                return np.empty((0, 2, 3))
             if ends.ndim != 3 or ends.shape[1:] != (2, 3):
                 hint = ("; one line is [[[x, y, z], [x, y, z]]]" if ends.shape == (2, 3) else
                         "; for a line through all points, numpy.stack([points[:-1], points[1:]], axis=1)" if ends.ndim == 2 and

@@ -52,7 +52,8 @@ assert np.array_equal(rgb(with_lines(coarse.astype(np.float32), radius=RADII, ma
 assert np.array_equal(rgb(with_lines(ENDS, radius=0.125, material="clay")), rgb(listed("clay", radii=[0.125] * 5)))
 assert with_lines(ENDS, material="clay").capsules == 5
 assert "5 capsules" in repr(with_lines(ENDS, material="clay"))
-assert with_lines(np.empty((0, 2, 3)), material="clay").capsules == 0
+for nothing in (with_lines(np.empty((0, 2, 3)), material="clay"), with_lines([], material="clay"), with_lines([], POINTS, material="clay")):
+    assert nothing.capsules == 0
 
 # Beside spheres and a mesh, in one scene.
 cube = ballpark.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], material="clay")
