@@ -2,9 +2,13 @@
  *
  *     numerics_map FOLDER
  *
- * In:    a folder.   Out: map-error.png, map-wrong.png, map-grazing.png, map-leaving.png in it.
- * Each picture has one field for each form: the book's quadratic in float, the form of Ray Tracing Gems in
- * float, ours in float, ours in double; a square is one pair of sizes, its colour the worst it does there. */
+ * In:    a folder.   Out: map-error.png, map-wrong.png, map-grazing.png, map-leaving.png,
+ * map-capsule-error.png, map-capsule-wrong.png in it. Each picture has one field for each form: of spheres
+ * the book's quadratic in float, the form of Ray Tracing Gems in float, ours in float, ours in double; of
+ * capsules the closed form in float, --numerics plain, and ours. A square is one pair of sizes, its colour
+ * the worst it does there. */
+#include "map.h"
+
 #include "cases.h"
 
 #include "image/image.h"
@@ -15,22 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FORMS = 4, SIDE = 10, SQUARE = 18, EACH = 600, GAP = 30, LEFT = 46, TOP = 62, BOTTOM = 64 };
-static const char *const form_names[FORMS] = {"book", "ray tracing gems", "ours in float", "ours in double"};
-
-/* The labs of the forms on the device. */
-typedef struct Atlas {
-    Lab labs[2];
-    const char *folder;
-} Atlas;
-
-/* value[form][row][column], row 0 at the bottom; NAN: nothing to judge. */
-typedef struct Map {
-    const char *file, *title, *across, *up, *worst, *best;
-    int column_low, row_low; /* exponents of ten of the first column and row */
-    double low, high;        /* exponents of ten that are all white and all dark */
-    double value[FORMS][SIDE][SIDE];
-} Map;
+static const char *const of_spheres[FORMS] = {"book", "ray tracing gems", "ours in float", "ours in double"};
 
 /* From white over yellow and red to black. */
 static void shade(double share, uint8_t color[3]) {
@@ -57,7 +46,7 @@ static void draw_axis_number(BpCanvas *canvas, uint32_t x, uint32_t y, int expon
     draw_text(canvas, x, y, 1, text);
 }
 
-static void draw(const Atlas *atlas, const Map *map) {
+void map_draw(const Atlas *atlas, const Map *map) {
     static const uint8_t white[3] = {255, 255, 255}, grey[3] = {200, 200, 200};
     const uint32_t field = SIDE * SQUARE;
     BpCanvas canvas = {.width = LEFT + FORMS * (field + GAP), .height = TOP + field + BOTTOM};
@@ -69,7 +58,7 @@ static void draw(const Atlas *atlas, const Map *map) {
     draw_text(&canvas, LEFT, 8, 2, map->title);
     for (uint32_t f = 0; f < FORMS; ++f) {
         const uint32_t left = LEFT + f * (field + GAP);
-        draw_text(&canvas, left, 36, 2, form_names[f]);
+        draw_text(&canvas, left, 36, 2, (map->forms != NULL ? map->forms : of_spheres)[f]);
         for (uint32_t row = 0; row < SIDE; ++row)
             for (uint32_t column = 0; column < SIDE; ++column) {
                 uint8_t color[3];
@@ -157,8 +146,8 @@ static void map_sizes(Atlas *atlas) {
             }
     }
     /* Where no ray starts 5e-7 r off the surface or more, there is no error to judge, in any form. */
-    draw(atlas, &error);
-    draw(atlas, &wrong);
+    map_draw(atlas, &error);
+    map_draw(atlas, &wrong);
     cases_clear(&cases);
 }
 
@@ -204,7 +193,7 @@ static void map_grazing(Atlas *atlas) {
                 map.value[form][row][column] = rays < 10 ? NAN : (double)wrong / (double)rays;
             }
     }
-    draw(atlas, &map);
+    map_draw(atlas, &map);
     cases_clear(&cases);
 }
 
@@ -269,7 +258,7 @@ static void map_leaving(Atlas *atlas) {
             map.value[form][cell / SIDE][cell % SIDE] = rays < 10 ? NAN : (double)wrong / (double)rays;
         }
     }
-    draw(atlas, &map);
+    map_draw(atlas, &map);
     free(points);
     free(own);
     cases_clear(&cases);
@@ -283,11 +272,15 @@ int main(int argc, char **argv) {
         return 2;
     }
     atlas.folder = argv[1];
-    if (!lab_open(&atlas.labs[0], "float") || !lab_open(&atlas.labs[1], "double")) return 77;
+    if (!lab_open(&atlas.labs[0], "float") || !lab_open(&atlas.labs[1], "double") ||
+        !lab_open(&atlas.plain, "plain"))
+        return 77;
     map_sizes(&atlas);
     map_grazing(&atlas);
     map_leaving(&atlas);
+    map_capsules(&atlas);
     lab_close(&atlas.labs[0]);
     lab_close(&atlas.labs[1]);
+    lab_close(&atlas.plain);
     return 0;
 }

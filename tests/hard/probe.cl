@@ -341,6 +341,23 @@ __kernel void probe_turns(SCENE_PARAMETERS uint count, __global const real *rays
 #endif
 }
 
+#if EFFECT_CAPSULES
+/* Rays, each at one capsule of a scene alone, by its number. Out: the distance, and whether it is met. */
+__kernel void probe_capsules(SCENE_PARAMETERS uint count, __global const real *rays, __global const uint *numbers, __global refined *out) {
+    PROBE_ITEM
+    const Scene scene = scene_init(SCENE_ARGUMENTS);
+    const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
+    Hit hit = no_hit(REAL_LARGE);
+    for (uint slot = 0; slot < scene.geometry.leaf_count * TREE_WIDTH; ++slot) {
+        if (slot_sphere[slot] != numbers[item]) continue;
+        const Sphere sphere = sphere_for_ray(&scene.geometry, &ray, slot);
+        intersect_sphere(&scene.geometry, &ray, 1, &sphere, slot, &hit);
+    }
+    out[2 * item] = hit.t;
+    out[2 * item + 1] = hit.slot != NO_SLOT;
+}
+#endif
+
 #if SAMPLES_TRIANGLES
 /* A triangle from a point (high, low, and two numbers): whether it is sampled, its solid angle over 2 pi, a direction to it. */
 __kernel void probe_solid_angle(uint count, __global const real *points, __global const real *triangles,

@@ -41,57 +41,6 @@ static void run(const Lab *lab) {
     bp_worker_destroy(&worker);
 }
 
-/* ---- in 113 bits: a cylinder and two balls ---- */
-
-typedef struct Stretch {
-    bool meets;
-    Wide from, to;
-} Stretch;
-
-static void widen(Stretch *stretch, Wide from, Wide to) {
-    if (!stretch->meets || from < stretch->from) stretch->from = from;
-    if (!stretch->meets || to > stretch->to) stretch->to = to;
-    stretch->meets = true;
-}
-
-static Stretch stretch_of(const BpCapsule *capsule, const Wide origin[3], const Wide d[3], double scale) {
-    const Wide r = (Wide)capsule->radius * (Wide)scale, dd = wide_dot(d, d);
-    Wide axis[3], m[3], p[3], q[3];
-    Stretch stretch = {false, 0, 0};
-    for (int k = 0; k < 2; ++k) {
-        Wide oc[3];
-        for (int a = 0; a < 3; ++a) oc[a] = (Wide)capsule->ends[k][a] - origin[a];
-        const Wide middle = wide_dot(oc, d) / dd;
-        for (int a = 0; a < 3; ++a) oc[a] -= middle * d[a];
-        const Wide room = r * r - wide_dot(oc, oc);
-        if (room >= 0) widen(&stretch, middle - wide_sqrt(room / dd), middle + wide_sqrt(room / dd));
-    }
-    for (int a = 0; a < 3; ++a) {
-        axis[a] = (Wide)capsule->ends[1][a] - (Wide)capsule->ends[0][a];
-        m[a] = origin[a] - (Wide)capsule->ends[0][a];
-    }
-    const Wide ww = wide_dot(axis, axis);
-    if (ww == 0) return stretch;
-    const Wide of_d = wide_dot(d, axis) / ww, of_m = wide_dot(m, axis) / ww;
-    for (int a = 0; a < 3; ++a) {
-        p[a] = d[a] - of_d * axis[a];
-        q[a] = m[a] - of_m * axis[a];
-    }
-    const Wide A = wide_dot(p, p), t = A > 0 ? -wide_dot(p, q) / A : 0;
-    for (int a = 0; a < 3; ++a) q[a] += t * p[a];
-    const Wide room = r * r - wide_dot(q, q);
-    if (!(A > 0) || room < 0) return stretch; /* along the axis the balls have both ends */
-    Wide from = t - wide_sqrt(room / A), to = t + wide_sqrt(room / A);
-    if (of_d != 0) {
-        const Wide low = -of_m / of_d, high = (1 - of_m) / of_d;
-        from = from > (low < high ? low : high) ? from : (low < high ? low : high);
-        to = to < (low < high ? high : low) ? to : (low < high ? high : low);
-    } else if (of_m < 0 || of_m > 1)
-        return stretch;
-    if (from <= to) widen(&stretch, from, to);
-    return stretch;
-}
-
 static void wide_ray(const double *ray, Wide origin[3], Wide d[3]) {
     for (int a = 0; a < 3; ++a) {
         origin[a] = (Wide)ray[RAY_HIGH + a] + (Wide)ray[RAY_LOW + a];
@@ -106,7 +55,7 @@ typedef struct Score {
     double worst_t, worst_chord;
 } Score;
 
-static double distance_of(Stretch stretch) {
+static double distance_of(TurnsStretch stretch) {
     return stretch.from > 0 ? (double)stretch.from : (double)stretch.to;
 }
 
@@ -119,16 +68,16 @@ static Score score(double band) {
         bool sure_hit = false, close = false, deep = false;
         wide_ray(ray, origin, d);
         for (size_t c = 0; c < capsule_count; ++c) {
-            const Stretch all = stretch_of(&capsules[c], origin, d, 1);
-            const bool less = stretch_of(&capsules[c], origin, d, 1 - band).meets,
-                       more = stretch_of(&capsules[c], origin, d, 1 + band).meets;
+            const TurnsStretch all = turns_through(&capsules[c], origin, d, 1);
+            const bool less = turns_through(&capsules[c], origin, d, 1 - band).meets,
+                       more = turns_through(&capsules[c], origin, d, 1 + band).meets;
             close = close || less != more;
             if (!all.meets || all.to <= 0) continue;
             sure_hit = sure_hit || less;
             if (distance_of(all) >= nearest) continue;
             nearest = distance_of(all);
             chord = (double)(all.to - all.from);
-            deep = stretch_of(&capsules[c], origin, d, 0.9).meets && all.from > 0;
+            deep = turns_through(&capsules[c], origin, d, 0.9).meets && all.from > 0;
         }
         const bool met = row[TURN_MET] >= 0;
         if (met && !isfinite(row[TURN_T])) ++found.not_finite;
@@ -207,6 +156,42 @@ static bool all_sizes(const Lab *lab) {
         run(lab);
         right = judge(lab, "all sizes", score(1e-5), RAYS / 20, lab->refined_double ? 1e-9 : 3e-6,
                       lab->refined_double ? 1e-6 : 2e-3) &&
+                right;
+    }
+    return right;
+}
+
+/* Rays that begin before the surface, a millionth to a tenth of the radius away, and go in or past. */
+static bool near_its_surface(const Lab *lab) {
+    bool right = true;
+    for (int step = 0; step < 4; ++step) {
+        const double radius = decade(-3, 3);
+        double way[3];
+        lab_direction(&state, way);
+        for (int a = 0; a < 3; ++a) way[a] *= 10 * radius;
+        capsule_count = 0;
+        const BpCapsule *capsule = add((const double[3]){-way[0] / 2, -way[1] / 2, -way[2] / 2}, way, radius);
+        for (size_t i = 0; i < RAYS; ++i) {
+            const double from = lab_unit(&state), to = between(-0.2, 1.2),
+                         away = radius * (1 + decade(-6, -1));
+            double axis[3], any[3], beside[3], across[3], origin[3], target[3];
+            for (int a = 0; a < 3; ++a) axis[a] = capsule->ends[1][a] - capsule->ends[0][a];
+            lab_direction(&state, any);
+            lab_cross(axis, any, beside);
+            lab_direction(&state, any);
+            lab_cross(axis, any, across);
+            const double one = sqrt(lab_dot(beside, beside)), other = sqrt(lab_dot(across, across)),
+                         impact = between(0, 1.5) * radius;
+            for (int a = 0; a < 3; ++a) {
+                origin[a] = capsule->ends[0][a] + from * axis[a] + away * beside[a] / one;
+                target[a] = capsule->ends[0][a] + to * axis[a] + impact * across[a] / other;
+            }
+            turns_aim(fine, rays + i * RAY_REALS, origin, target);
+        }
+        go_on();
+        run(lab);
+        right = judge(lab, "near its surface", score(1e-5), RAYS / 4, lab->refined_double ? 1e-6 : 1e-3,
+                      INFINITY) &&
                 right;
     }
     return right;
@@ -302,7 +287,7 @@ static bool left_both_ways(const Lab *lab) {
             point[a] = (Wide)row[TURN_HIGH + a] + (Wide)row[TURN_LOW + a];
             w[a] = (Wide)d[a];
         }
-        const Stretch through = stretch_of(capsule, point, w, 1);
+        const TurnsStretch through = turns_through(capsule, point, w, 1);
         worst = fmax(worst, fabs(row[TURN_NEXT_T] - (double)through.to) / capsule->radius);
     }
     printf("%s, left both ways: %zu outward, %zu inward, %zu wrong, exits to %.2g of the radius\n", lab->name,
@@ -349,8 +334,8 @@ static bool mean_chord(const Lab *lab) {
 }
 
 int main(int argc, char **argv) {
-    static bool (*const cases[])(const Lab *) = {all_sizes, many,           along_its_axis,
-                                                 no_length, left_both_ways, mean_chord};
+    static bool (*const cases[])(const Lab *) = {all_sizes, near_its_surface, many,      along_its_axis,
+                                                 no_length, left_both_ways,   mean_chord};
     Lab lab;
     int failed = 0;
     if (argc != 2) {

@@ -69,3 +69,49 @@ bool turns_passes(const BpTriangle *triangle, const Wide origin[3], const Wide d
     *outside = sum < 0;
     return true;
 }
+
+/* ---- capsules: a cylinder and two balls ---- */
+
+static void widen(TurnsStretch *stretch, Wide from, Wide to) {
+    if (!stretch->meets || from < stretch->from) stretch->from = from;
+    if (!stretch->meets || to > stretch->to) stretch->to = to;
+    stretch->meets = true;
+}
+
+TurnsStretch turns_through(const BpCapsule *capsule, const Wide origin[3], const Wide d[3], double scale) {
+    const Wide r = (Wide)capsule->radius * (Wide)scale, dd = wide_dot(d, d);
+    Wide axis[3], m[3], p[3], q[3];
+    TurnsStretch stretch = {false, 0, 0};
+    for (int k = 0; k < 2; ++k) {
+        Wide oc[3];
+        for (int a = 0; a < 3; ++a) oc[a] = (Wide)capsule->ends[k][a] - origin[a];
+        const Wide middle = wide_dot(oc, d) / dd;
+        for (int a = 0; a < 3; ++a) oc[a] -= middle * d[a];
+        const Wide room = r * r - wide_dot(oc, oc);
+        if (room >= 0) widen(&stretch, middle - wide_sqrt(room / dd), middle + wide_sqrt(room / dd));
+    }
+    for (int a = 0; a < 3; ++a) {
+        axis[a] = (Wide)capsule->ends[1][a] - (Wide)capsule->ends[0][a];
+        m[a] = origin[a] - (Wide)capsule->ends[0][a];
+    }
+    const Wide ww = wide_dot(axis, axis);
+    if (ww == 0) return stretch;
+    const Wide of_d = wide_dot(d, axis) / ww, of_m = wide_dot(m, axis) / ww;
+    for (int a = 0; a < 3; ++a) {
+        p[a] = d[a] - of_d * axis[a];
+        q[a] = m[a] - of_m * axis[a];
+    }
+    const Wide A = wide_dot(p, p), t = A > 0 ? -wide_dot(p, q) / A : 0;
+    for (int a = 0; a < 3; ++a) q[a] += t * p[a];
+    const Wide room = r * r - wide_dot(q, q);
+    if (!(A > 0) || room < 0) return stretch; /* along the axis the balls have both ends */
+    Wide from = t - wide_sqrt(room / A), to = t + wide_sqrt(room / A);
+    if (of_d != 0) {
+        const Wide low = -of_m / of_d, high = (1 - of_m) / of_d;
+        from = from > (low < high ? low : high) ? from : (low < high ? low : high);
+        to = to < (low < high ? high : low) ? to : (low < high ? high : low);
+    } else if (of_m < 0 || of_m > 1)
+        return stretch;
+    if (from <= to) widen(&stretch, from, to);
+    return stretch;
+}

@@ -1,8 +1,8 @@
 /* turns.h: what rays meet among spheres, triangles and capsules, and what they meet next when they leave it.
  *
  * In:    spheres, triangles, rays, the directions in which they leave.   Out: TURN_REALS numbers a ray.
- * Knows: lab.h, and where a line passes a triangle in 113 bits.   Does not know: which triangles and rays
- * matter. */
+ * Knows: lab.h, and where a line passes a triangle or a capsule in 113 bits.   Does not know: which triangles
+ * and rays matter. */
 #ifndef TESTS_HARD_TURNS_H
 #define TESTS_HARD_TURNS_H
 
@@ -30,5 +30,12 @@ void turns_run(const Lab *lab, BpWorker *worker, size_t rays_count, const double
  * lengths of d, and the side that it comes from. */
 bool turns_passes(const BpTriangle *triangle, const Wide origin[3], const Wide d[3], Wide tiny, Wide w[3],
                   Wide *t, bool *outside);
+
+/* Where a line is inside a capsule whose radius is `scale` times as large, in lengths of d. */
+typedef struct TurnsStretch {
+    bool meets;
+    Wide from, to;
+} TurnsStretch;
+TurnsStretch turns_through(const BpCapsule *capsule, const Wide origin[3], const Wide d[3], double scale);
 
 #endif
