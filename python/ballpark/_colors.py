@@ -64,7 +64,7 @@ def _ends(values: Array, color_range: Range, what: str) -> typing.Tuple[float, f
     return low, high
 
 
-def map_colors(values: Array, cmap: str, color_range: Range, what: str) -> npt.NDArray[np.float32]:
+def map_colors(values: Array, cmap: str, color_range: Range, what: str = "color") -> npt.NDArray[np.float32]:
     """Colours for numbers; those that are not finite become grey."""
     table = _table(cmap)
     values = np.asarray(values, np.float64)
