@@ -129,9 +129,9 @@ BpStatus bp_style_choose_colors(BpStyleJob *job, BpError *err) {
     if (style->color_by == BP_COLOR_AUTO && p->color == NULL)
         job->color_by = p->has_element ? BP_COLOR_ELEMENT : p->has_type ? BP_COLOR_TYPE : BP_COLOR_CONSTANT;
     const bool lacks = (style->color_by == BP_COLOR_ELEMENT && !p->has_element) ||
-                     (style->color_by == BP_COLOR_CHAIN && !p->has_chain) ||
-                     (style->color_by == BP_COLOR_RESIDUE && !p->has_residue) ||
-                     (style->color_by == BP_COLOR_TYPE && !p->has_type);
+                       (style->color_by == BP_COLOR_CHAIN && !p->has_chain) ||
+                       (style->color_by == BP_COLOR_RESIDUE && !p->has_residue) ||
+                       (style->color_by == BP_COLOR_TYPE && !p->has_type);
     if (lacks)
         return bp_fail(err, BP_ERR_SCENE, "found no %s in the file, expected them for colours",
                        color_names[style->color_by]);
