@@ -13,6 +13,14 @@ enum {
     BP_PARSE_MADE = 2 /* the document was made for one file: errors in that need not name the document */
 };
 
+/* What the entries of "particles" have selected in the frames of a film, where no particle may be left in
+ * some. For the entries before BP_FILM_ENTRIES_MAX, by their places; others must always select something. */
+enum { BP_FILM_ENTRIES_MAX = 16 };
+typedef struct BpFilmSelections {
+    bool looking; /* the frames are gone through for the first time: these are filled, and nothing is wrong */
+    bool found[BP_FILM_ENTRIES_MAX], missed[BP_FILM_ENTRIES_MAX]; /* something, or nothing, in some frame */
+} BpFilmSelections;
+
 /* Changes that a command line makes to the document. Zeros: none. */
 typedef struct BpSceneChanges {
     unsigned flags;    /* BP_PARSE_... */
@@ -24,6 +32,7 @@ typedef struct BpSceneChanges {
     bool fit;               /* a camera fitted to the particles, or to the scene where there are none */
     uint32_t turning;       /* the fitted camera is for a turntable of so many pictures */
     const BpCamera *camera; /* Optional: takes its place, direction and focus instead of fitting */
+    BpFilmSelections *film; /* Optional: the scene is a frame of a film */
     struct BpParticleCache *cache; /* Optional: keeps files open from frame to frame */
     uint64_t *frame_count; /* Optional: counts frames instead of reading any; of several files, the least */
     bool has_range;        /* of the column that gives colours, where the document has none */

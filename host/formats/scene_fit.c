@@ -84,6 +84,10 @@ BpStatus bp_scene_fit_camera(const BpNode *node, const BpSceneChanges *changes, 
     BpSphere *made;
     size_t count;
     BP_TRY(bp_scene_fitted(scene, &spheres, &count, &made, err));
+    if (count == 0 && changes->film != NULL && changes->film->looking) { /* the other frames tell */
+        free(made);
+        return BP_OK;
+    }
     BpError inner = {0};
     const BpStatus status = changes->turning > 0
                                 ? bp_camera_fit_turning(spheres, count, direction, camera->margin,

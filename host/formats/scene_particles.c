@@ -35,18 +35,32 @@ static void keep_range(const BpParticleStyle *style, const double range[2], BpSc
     }
 }
 
-static BpStatus add_particles(BpParticleFile *file, const char *path, const Entry *entry, BpScene *scene,
-                              BpError *err) {
+/* Whether an entry of a film may select nothing in this frame. */
+static bool may_miss(const BpFilmSelections *film, size_t place) {
+    return film != NULL && place < BP_FILM_ENTRIES_MAX && (film->looking || film->found[place]);
+}
+
+static void note_film(BpFilmSelections *film, size_t place, bool found) {
+    if (film == NULL || place >= BP_FILM_ENTRIES_MAX || !film->looking) return;
+    film->found[place] |= found;
+    film->missed[place] |= !found;
+}
+
+static BpStatus add_particles(BpParticleFile *file, const char *path, const Entry *entry, size_t place,
+                              BpFilmSelections *film, BpScene *scene, BpError *err) {
     BpParticles particles = {0};
+    const size_t first = scene->sphere_count;
     char summary[1024];
     double range[2];
     BpStatus status = bp_particle_file_frame(file, entry->frame, &particles, err);
     if (status == BP_OK) {
-        status = bp_particles_add_to_scene(&particles, &entry->style, entry->material, scene, summary,
-                                           sizeof summary, range, err);
+        status = bp_particles_add_to_scene(&particles, &entry->style, may_miss(film, place), entry->material,
+                                           scene, summary, sizeof summary, range, err);
         if (status == BP_ERR_SCENE) bp_error_at(err, path, 0, 0);
     }
-    if (status == BP_OK && entry->style.color_by == BP_COLOR_COLUMN) keep_range(&entry->style, range, scene);
+    if (status == BP_OK) note_film(film, place, scene->sphere_count > first);
+    if (status == BP_OK && entry->style.color_by == BP_COLOR_COLUMN && scene->sphere_count > first)
+        keep_range(&entry->style, range, scene);
     if (status == BP_OK && !particles.flat) scene->up = particles.up;
     if (status == BP_OK && particles.flat) scene->flat = true;
     bp_particles_clear(&particles);
@@ -68,7 +82,7 @@ static BpStatus read_file(const BpNode *file_node, const Entry *entry, size_t pl
         if (changes->frame_count != NULL)
             status = bp_particle_file_count(file, &count, err);
         else
-            status = add_particles(file, path, entry, scene, err);
+            status = add_particles(file, path, entry, place, changes->film, scene, err);
         if (status == BP_ERR_SCENE && err != NULL && (changes->flags & BP_PARSE_MADE) == 0)
             bp_name_document(file_node, "particles", err);
     }

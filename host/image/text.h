@@ -1,7 +1,8 @@
 /* text.h: draws small letters into an 8-bit picture, for legends.
  *
  * In:    a canvas, a string.   Out: pixels; a picture with them.
- * Knows: the shapes of digits, small letters and + - . _ % < >.   Does not know: what is written. */
+ * Knows: the shapes of digits, small letters and the signs of expressions.   Does not know: what is written.
+ */
 #ifndef BP_IMAGE_TEXT_H
 #define BP_IMAGE_TEXT_H
 

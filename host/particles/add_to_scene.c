@@ -48,6 +48,11 @@ static BpStatus run(BpStyleJob *job, BpError *err) {
     BpParticles *const p = job->p;
     char all[32], shown[32];
     BP_TRY(bp_style_choose_shown(job, err));
+    if (job->shown_count == 0 && job->may_miss) {
+        find_flat(job);
+        bp_style_say(job, "selected 0 of %s particles", bp_format_whole(p->count, all, sizeof all));
+        return BP_OK;
+    }
     if (p->notes[0] != '\0') bp_style_say(job, "%s", p->notes);
     const bool bonds = job->style->bonds || job->style->kind == BP_STYLE_BALL_AND_STICK;
     const bool whole = job->style->whole && bp_particles_repeat(p) && (p->bond_count > 0 || p->has_element);
@@ -87,11 +92,12 @@ static BpStatus run(BpStyleJob *job, BpError *err) {
     return BP_OK;
 }
 
-BpStatus bp_particles_add_to_scene(BpParticles *particles, const BpParticleStyle *style, uint32_t material,
-                                   BpScene *scene, char *summary, size_t size, double range[2],
-                                   BpError *err) {
+BpStatus bp_particles_add_to_scene(BpParticles *particles, const BpParticleStyle *style, bool may_miss,
+                                   uint32_t material, BpScene *scene, char *summary, size_t size,
+                                   double range[2], BpError *err) {
     BpStyleJob job = {.p = particles,
                       .style = style,
+                      .may_miss = may_miss,
                       .scene = scene,
                       .material = material,
                       .summary = summary,

@@ -14,7 +14,8 @@
  * style has them; the frame was read with the columns of the style. Moves molecules in `particles` together.
  * `summary` (Optional, of `size` bytes): what is shown, and every guess. `range`: Optional; the values at the
  * ends of the colormap. Fails if nothing is left to show. */
-BpStatus bp_particles_add_to_scene(BpParticles *particles, const BpParticleStyle *style, uint32_t material,
-                                   BpScene *scene, char *summary, size_t size, double range[2], BpError *err);
+BpStatus bp_particles_add_to_scene(BpParticles *particles, const BpParticleStyle *style, bool may_miss,
+                                   uint32_t material, BpScene *scene, char *summary, size_t size,
+                                   double range[2], BpError *err);
 
 #endif

@@ -13,6 +13,7 @@ typedef struct BpStyleJob {
     BpParticles *p;
     const BpParticleStyle *style;
     BpScene *scene;
+    bool may_miss; /* nothing selected is no error */
     uint32_t material;
     BpStyleColumns columns; /* those that the frame was read with */
     bool *shown;

@@ -74,7 +74,8 @@ static BpStatus select_particles(BpStyleJob *job, BpError *err) {
     BpError fault = {0};
     BpStatus status = bp_select_truths(&frame, select, job->shown, &fault);
     for (size_t i = 0; i < job->p->count && status == BP_OK; i++) job->selected_count += job->shown[i];
-    if (status == BP_OK && job->selected_count == 0) status = bp_select_fail_nothing(&frame, select, &fault);
+    if (status == BP_OK && job->selected_count == 0 && !job->may_miss)
+        status = bp_select_fail_nothing(&frame, select, &fault);
     return bp_style_fail_in("select", status, &fault, err);
 }
 

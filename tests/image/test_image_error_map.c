@@ -183,7 +183,7 @@ static void the_median_is_where_noise_is(void **state) {
 
 static void every_letter_has_its_own_shape(void **state) {
     (void)state;
-    static const char letters[] = "0123456789.%<>abcdefghijklmnopqrstuvwxyz";
+    static const char letters[] = "0123456789.,%<=>()[]*/+-^_abcdefghijklmnopqrstuvwxyz";
     uint8_t pixels[sizeof letters][12 * 16 * 3];
     static const uint8_t white[3] = {255, 255, 255};
     for (size_t i = 0; i < sizeof letters; i++) { /* the last one is no letter: a gap */

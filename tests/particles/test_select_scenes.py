@@ -169,8 +169,27 @@ class Selections(ProgramTest):
         self.assertEqual(len(set(pictures)), 3)
         for k, count in enumerate((1, 2, 3)):
             self.assertIn(f"selected {count} of 4", self.succeed("scene", "a.xyz", "--frame", k, "--select", "x > 2").errors)
-        result = self.fail_at("render", "a.xyz", *SIZE, "--frames", "::", "--select", "x > 3", "-o", "g.pfm")
-        self.assertIn("found no particle for which this holds: x > 3; x: from 0 to 3", result.errors)
+        result = self.fail_at("render", "a.xyz", *SIZE, "--frames", "::", "--select", "x > 9", "-o", "g.pfm")
+        self.assertIn("found no particle for which this holds: x > 9; x: from 0 to 3", result.errors)
+
+    def test_frames_in_which_nothing_is_selected(self):
+        """They show the rest, or nothing; but in some frame something must be selected by each entry."""
+        self.write("a.xyz", "".join(xyz([("C", 0, 0, 0), ("O", x, 0, 0)]) for x in (9, 2, 9, 2.5)))
+        for lookfrom in ({}, {"lookfrom": [1, 0, 12], "lookat": [1, 0, 0]}):
+            entries = [{"file": "a.xyz", "select": "element == C"}, {"file": "a.xyz", "select": "element == O and within 3 of element == C"}]
+            self.document(*entries, camera=lookfrom or {"fit": "particles"}, background=[1, 1, 1])
+            self.succeed("render", "x.json", *SIZE, "--frames", "::", "-o", "f.pfm")
+            pictures = [self.read(f"f-{k:04d}.pfm") for k in range(4)]
+            self.assert_same(pictures[0], pictures[2])
+            self.assertEqual(len(set(pictures)), 3)
+            entries[1]["select"] = "element == N and x > 1"
+            self.document(*entries, camera=lookfrom or {"fit": "particles"}, background=[1, 1, 1])
+            result = self.fail_at("render", "x.json", *SIZE, "--frames", "::", "-o", "g.pfm")
+            self.assertIn("for which this holds: element == N and x > 1; x: from 0 to 9; element: C, O", result.errors)
+        self.succeed("render", "a.xyz", *SIZE, "--frames", "::", "-o", "h.pfm", "--select", "x == 2.5", "--lighting", "studio", "--set", "shadow_catcher=true")
+        pictures = [self.read(f"h-{k:04d}.pfm") for k in range(4)]
+        self.assertEqual([pictures[0] == pictures[k] for k in range(4)], [True, True, True, False])
+        self.assertEqual([name for name in self.files() if name.startswith("g")], [])
 
     def test_errors(self):
         self.write("a.pdb", atom(0, " CA ", "ALA", (0, 0, 0), "C") + atom(1, " N  ", "ALA", (9, 0, 0), "N", "B"))

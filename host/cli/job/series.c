@@ -57,9 +57,10 @@ static BpStatus choose_frames(BpSeries *series, uint64_t count, BpError *err) {
     return BP_OK;
 }
 
-static BpSceneChanges changes_of(const BpSeries *series, uint64_t number) {
+static BpSceneChanges changes_of(BpSeries *series, uint64_t number) {
     const BpCommandLine *const line = series->line;
     BpSceneChanges changes = {.fit = line->fit};
+    if (bp_option_given(line, BP_OPTION_FRAMES)) changes.film = &series->film;
     changes.has_frame = bp_option_given(line, BP_OPTION_FRAME) || bp_option_given(line, BP_OPTION_FRAMES);
     changes.frame = bp_option_given(line, BP_OPTION_FRAMES)
                         ? series->first_frame + (int64_t)(number * series->step)
@@ -70,11 +71,27 @@ static BpSceneChanges changes_of(const BpSeries *series, uint64_t number) {
     return changes;
 }
 
+/* Fails if an entry has selected nothing in any frame, as its first frame alone would. */
+static BpStatus check_selections(BpSeries *series, BpError *err) {
+    bool missed = false;
+    for (size_t k = 0; k < BP_FILM_ENTRIES_MAX; k++)
+        missed |= series->film.missed[k] && !series->film.found[k];
+    series->film.looking = false;
+    if (!missed) return BP_OK;
+    BpScene *scene = NULL;
+    const BpSceneChanges changes = changes_of(series, 0);
+    const BpStatus status =
+        bp_setup_load_changed(series->line, series->line->operands[0], &changes, &scene, err);
+    bp_scene_destroy(&scene);
+    return status;
+}
+
 /* Reads all frames once, for a camera that shows every one of them and for the range of values. */
 static BpStatus look_ahead(BpSeries *series, BpError *err) {
     BpFitting fitting = {0};
     double range[2] = {INFINITY, -INFINITY};
     BpCamera camera = {0};
+    series->film.looking = true;
     for (uint64_t i = 0; i < series->count; i++) {
         BpScene *scene = NULL;
         BpSceneChanges changes = changes_of(series, i);
@@ -101,6 +118,7 @@ static BpStatus look_ahead(BpSeries *series, BpError *err) {
         bp_scene_destroy(&scene);
         BP_TRY(status);
     }
+    BP_TRY(check_selections(series, err));
     series->has_range = range[0] <= range[1];
     memcpy(series->range, range, sizeof range);
     if (!fitting.begun) return BP_OK;

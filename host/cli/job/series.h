@@ -7,12 +7,14 @@
 
 #include "cli/line/options.h"
 #include "formats/particle_cache.h"
+#include "formats/scene_changes.h"
 #include "scene/scene.h"
 
 typedef struct BpSeries {
     const BpCommandLine *line;
     uint64_t count, next; /* pictures in all; the number of the next, from 0 */
     BpParticleCache cache;
+    BpFilmSelections film; /* of its frames */
     int64_t first_frame;
     uint64_t step;
     BpCamera camera; /* of all frames, or of the turntable's first picture */
