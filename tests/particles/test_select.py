@@ -339,8 +339,65 @@ print(json.dumps([universe.select_atoms(*[text], periodic=True, updating=False).
 """
 
 
+GEMMI = r"""
+import json, sys
+import gemmi
+model = gemmi.read_structure(sys.argv[1])[0]
+atoms = sorted((atom.serial, chain.name, residue.name, residue.het_flag, atom.element.name, residue.seqid.num, atom.b_iso)
+               for chain in model for residue in chain for atom in residue)
+print(json.dumps(atoms))
+"""
+ASE = r"""
+import json, sys
+import ase.io
+from ase.geometry import get_distances
+atoms = ase.io.read(sys.argv[1])
+own = [i for i, symbol in enumerate(atoms.symbols) if symbol == "C"]
+_, lengths = get_distances(atoms.positions, atoms.positions[own], cell=atoms.cell, pbc=atoms.pbc)
+print(json.dumps(lengths.min(axis=1).tolist()))
+"""
+
+
 class Independent(SelectTest):
-    """Index by index beside MDAnalysis, on files of its own tests. Its `around` leaves out what it is measured from."""
+    """Index by index beside MDAnalysis, on files of its own tests (its `around` leaves out what it is measured from), beside gemmi and
+    beside ASE."""
+
+    def said_by(self, code, *arguments):
+        result = subprocess.run([listed.READERS_PYTHON, "-c", code, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                check=False)
+        if "ModuleNotFoundError" in result.stderr:
+            self.skipTest(f"{result.stderr.split()[-1]} is not installed for {listed.READERS_PYTHON}")
+        self.assertEqual(result.returncode, 0, result.stderr[-2000:])
+        return json.loads(result.stdout)
+
+    def test_beside_gemmi(self):
+        """mmCIF and PDB: chains, residues, records, elements, numbers and temperature factors."""
+        folder, files = self.real_files(), 0
+        for name in ("4x8u.pdbx", "mmcif/1YJP.cif", "mmcif/7ETN.cif.gz", "mmcif/1BD2.cif.gz", "1hvr.pdb", "4E43.pdb"):
+            path = os.path.join(folder, name)
+            if not os.path.exists(path):
+                continue
+            if name.endswith(".pdbx"):  # an ending that gemmi does not know
+                with open(path, "rb") as file:
+                    path = self.write("a.cif", file.read())
+            atoms, files = self.said_by(GEMMI, path), files + 1
+            chain, residue = atoms[0][1], atoms[len(atoms) // 2][2]
+            for ours, holds in [(f'chain == "{chain}"', lambda a: a[1] == chain), (f'resname == "{residue}"', lambda a: a[2] == residue),
+                                ("hetero", lambda a: a[3] == "H"), ("element in (N, O)", lambda a: a[4] in "NO"),
+                                ("resid < 20 and not hetero", lambda a: a[5] < 20 and a[3] == "A"), ("20 < bfactor <= 30.5", lambda a: 20 < round(a[6], 3) <= 30.5)]:
+                self.assertEqual(self.select(path, ours), [i for i, a in enumerate(atoms) if holds(a)], (name, ours))
+        self.assertGreaterEqual(files, 3)
+
+    def test_within_beside_ase(self):
+        rng = random.Random(3)
+        for edges, periodic in itertools.product(Within.SHAPES[1:4] + Within.SHAPES[6:], ((1, 1, 1), (1, 0, 1))):
+            rows = ["{} {} {} {}".format("C" if k % 9 == 0 else "O", *(round(sum(1.3 * rng.random() * edge[c] for edge in edges), 6) for c in range(3)))
+                    for k in range(120)]
+            lattice = f'Lattice="{" ".join(str(v) for edge in edges for v in edge)}" pbc="{" ".join("FT"[p] for p in periodic)}"'
+            path = self.write("a.extxyz", f"120\n{lattice} Properties=species:S:1:pos:R:3\n" + "\n".join(rows) + "\n")
+            least = self.said_by(ASE, path)
+            for reach in (0.77, 2.13, 4.41):
+                self.assertEqual(self.select(path, f"within {reach} of element == C"), [k for k, d in enumerate(least) if d <= reach], (edges, periodic, reach))
 
     SAME = [("protein", "protein"), ("nucleic", "nucleic"), ("backbone", "backbone"), ("name == CA", "name CA"), ("resname in (ALA, GLY, LYS)", "resname ALA GLY LYS"),
             ("protein and not name in (CA, CB)", "protein and not name CA CB"), ("10 <= resid <= 20 and name == N", "resid 10:20 and name N"),
