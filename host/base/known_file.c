@@ -44,9 +44,6 @@ static const Known known[] = {{{BP_FILE_SUMS, "the sums of a render (.bpa)"}, BE
                               {{BP_FILE_PARTICLES, "an HDF5 file"}, BEGINS("\x89HDF\r\n\x1a\n")},
                               {{BP_FILE_PARTICLES, "a file of molecules (MOL2)"}, NAMED(".mol2")},
                               {{BP_FILE_PARTICLES, "a file of molecules (SDF)"}, NAMED(".sdf")},
-                              {{BP_FILE_PARTICLES, "a structure of VASP (POSCAR)"}, NAMED("POSCAR")},
-                              {{BP_FILE_PARTICLES, "a structure of VASP (POSCAR)"}, NAMED("CONTCAR")},
-                              {{BP_FILE_PARTICLES, "a structure of VASP (POSCAR)"}, NAMED(".vasp")},
                               {{BP_FILE_PARTICLES, "a structure of AtomEye (CFG)"}, BEGINS("Number of p")},
                               {{BP_FILE_PARTICLES, "a file of molecules (MOL)"}, NAMED(".mol")},
                               {{BP_FILE_PARTICLES, "a grid of Gaussian (cube)"}, NAMED(".cube")},
@@ -82,12 +79,9 @@ static const Known known[] = {{{BP_FILE_SUMS, "the sums of a render (.bpa)"}, BE
                               {{BP_FILE_SOURCE, "the source text of a program"}, NAMED(".h")},
                               {{BP_FILE_SOURCE, "the source text of a program"}, NAMED(".py")}};
 
-/* A name without a dot, such as POSCAR, matches a whole name or its beginning: POSCAR_relaxed. */
 static bool has_ending(const char *name, const char *ending) {
-    const char *const slash = strrchr(name, '/'), *const base = slash != NULL ? slash + 1 : name;
-    const size_t length = strlen(base), size = strlen(ending);
-    if (ending[0] != '.') return strncasecmp(base, ending, size) == 0;
-    return length >= size && strcasecmp(base + length - size, ending) == 0;
+    const size_t length = strlen(name), size = strlen(ending);
+    return length >= size && strcasecmp(name + length - size, ending) == 0;
 }
 
 bool bp_known_file(const char *name, const char *bytes, size_t length, BpKnownFile *found) {

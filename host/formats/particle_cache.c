@@ -24,7 +24,7 @@ static BpStatus fail_format(const BpNode *node, const char *path, FILE *stream, 
     bp_known_file(path, bytes, length, &known);
     return bp_node_fail(
         node, BP_PART_VALUE, err,
-        "found %s, expected a name that ends in .xyz, .pdb, .cif, .gro, .dump, .lammpstrj, .data, "
+        "found %s, expected a name that ends in .xyz, .pdb, .cif, .vasp, .gro, .dump, .lammpstrj, .data, "
         ".gsd, .csv or .ply (and perhaps .gz)%s",
         known.what,
         known.kind == BP_FILE_PARTICLES ? "; convert it, with ASE or MDAnalysis"

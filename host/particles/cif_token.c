@@ -48,6 +48,7 @@ BpStatus cif_next(CifTokens *tokens, Input *input, BpError *err) {
     char *after = tokens->token + strcspn(tokens->token, " \t\r");
     if (*tokens->token == '\'' || *tokens->token == '"') {
         after = end_of_quoted(tokens->token + 1, *tokens->token);
+        if (after == NULL && tokens->lenient) after = tokens->token + strlen(tokens->token);
         if (after == NULL)
             return input_fail(input, true, err, "found a quote that is not closed, expected its end");
         tokens->quoted = true;

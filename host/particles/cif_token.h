@@ -13,6 +13,7 @@ enum { CIF_TEXT_SIZE = 64 };
 typedef struct CifTokens {
     char *cursor; /* in the line that is being read; NULL: at the next line */
     char *token;  /* the token last taken, valid until the next; NULL: the end of the file */
+    bool lenient; /* a quote that is not closed ends with its line, as in texts that nobody reads */
     bool quoted;  /* it stood in quotes or between semicolons, so it is a value whatever it looks like */
     char text[CIF_TEXT_SIZE]; /* of the token, where it is a text of several lines */
 } CifTokens;

@@ -22,6 +22,8 @@ static const struct {
     [BP_PARTICLES_PDB] = {"PDB", read_pdb},
     [BP_PARTICLES_PQR] = {"PQR", read_pdb},
     [BP_PARTICLES_CIF] = {"mmCIF", read_cif},
+    [BP_PARTICLES_CRYSTAL] = {"CIF", read_crystal},
+    [BP_PARTICLES_POSCAR] = {"POSCAR", read_poscar},
     [BP_PARTICLES_GRO] = {"GRO", read_gro},
     [BP_PARTICLES_DUMP] = {"LAMMPS dump", read_dump},
     [BP_PARTICLES_DATA] = {"LAMMPS data", read_data},
@@ -52,14 +54,26 @@ static BpParticleFormat format_of_name(const char *name) {
     static const struct {
         const char *ending;
         BpParticleFormat format;
-    } endings[] = {
-        {".xyz", BP_PARTICLES_XYZ},         {".extxyz", BP_PARTICLES_XYZ}, {".pdb", BP_PARTICLES_PDB},
-        {".ent", BP_PARTICLES_PDB},         {".cif", BP_PARTICLES_CIF},    {".mmcif", BP_PARTICLES_CIF},
-        {".gro", BP_PARTICLES_GRO},         {".dump", BP_PARTICLES_DUMP},  {".lammpstrj", BP_PARTICLES_DUMP},
-        {".lammpsdump", BP_PARTICLES_DUMP}, {".data", BP_PARTICLES_DATA},  {".lmp", BP_PARTICLES_DATA},
-        {".lammpsdata", BP_PARTICLES_DATA}, {".gsd", BP_PARTICLES_GSD},    {".csv", BP_PARTICLES_CSV},
-        {".tsv", BP_PARTICLES_CSV},         {".ply", BP_PARTICLES_PLY},    {".pqr", BP_PARTICLES_PQR},
-        {".pdbx", BP_PARTICLES_CIF}};
+    } endings[] = {{".xyz", BP_PARTICLES_XYZ},         {".extxyz", BP_PARTICLES_XYZ},
+                   {".pdb", BP_PARTICLES_PDB},         {".ent", BP_PARTICLES_PDB},
+                   {".cif", BP_PARTICLES_CIF},         {".mmcif", BP_PARTICLES_CIF},
+                   {".gro", BP_PARTICLES_GRO},         {".dump", BP_PARTICLES_DUMP},
+                   {".lammpstrj", BP_PARTICLES_DUMP},  {".lammpsdump", BP_PARTICLES_DUMP},
+                   {".data", BP_PARTICLES_DATA},       {".lmp", BP_PARTICLES_DATA},
+                   {".lammpsdata", BP_PARTICLES_DATA}, {".gsd", BP_PARTICLES_GSD},
+                   {".csv", BP_PARTICLES_CSV},         {".tsv", BP_PARTICLES_CSV},
+                   {".ply", BP_PARTICLES_PLY},         {".pqr", BP_PARTICLES_PQR},
+                   {".pdbx", BP_PARTICLES_CIF},        {".mcif", BP_PARTICLES_CIF},
+                   {".vasp", BP_PARTICLES_POSCAR},     {".poscar", BP_PARTICLES_POSCAR},
+                   {".contcar", BP_PARTICLES_POSCAR},  {".xdatcar", BP_PARTICLES_POSCAR}};
+    /* Whole names, or their beginnings: POSCAR_relaxed. */
+    static const struct {
+        const char *name;
+        BpParticleFormat format;
+    } beginnings[] = {{"data.", BP_PARTICLES_DATA},
+                      {"POSCAR", BP_PARTICLES_POSCAR},
+                      {"CONTCAR", BP_PARTICLES_POSCAR},
+                      {"XDATCAR", BP_PARTICLES_POSCAR}};
     size_t length = strlen(name);
     if (length > 3 && strcasecmp(name + length - 3, ".gz") == 0) length -= 3;
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
@@ -68,7 +82,10 @@ static BpParticleFormat format_of_name(const char *name) {
             return endings[i].format;
     }
     const char *const slash = strrchr(name, '/');
-    return strncmp(slash != NULL ? slash + 1 : name, "data.", 5) == 0 ? BP_PARTICLES_DATA : BP_PARTICLES_NONE;
+    const char *const base = slash != NULL ? slash + 1 : name;
+    for (size_t i = 0; i < sizeof beginnings / sizeof *beginnings; i++)
+        if (strncmp(base, beginnings[i].name, strlen(beginnings[i].name)) == 0) return beginnings[i].format;
+    return BP_PARTICLES_NONE;
 }
 
 /* Whether a header counts atoms and has a box, as those of LAMMPS data files do, which may have any name. */
@@ -76,6 +93,30 @@ static bool has_data_header(const char *text) {
     const char *const low = strstr(text, "xlo");
     return low != NULL && strncmp(low + 3 + strspn(low + 3, " \t"), "xhi", 3) == 0 &&
            strstr(text, "atoms") != NULL;
+}
+
+/* Whether a text begins like a POSCAR file, which may have any name: a title, a scale, three edges, words or
+ * whole numbers. */
+static bool has_poscar_head(const char *text) {
+    static const size_t least[] = {1, 3, 3, 3}, most[] = {3, 3, 3, 3};
+    char line[2048], *words[4];
+    double value = 0;
+    for (int l = 0; l < 5; l++) {
+        const size_t length = strcspn(text, "\n");
+        if (text[length] == '\0' || (l > 0 && length >= sizeof line)) return false;
+        snprintf(line, sizeof line, "%.*s", length < sizeof line ? (int)length : 0, text);
+        text += length + 1;
+        const size_t count = split_words(line, words, 4);
+        if (l == 0) continue;
+        if (count < least[l - 1] || count > most[l - 1] || count == 2) return false;
+        for (size_t w = 0; w < count; w++)
+            if (!word_number(words[w], &value)) return false;
+    }
+    const size_t length = strcspn(text, "\n");
+    snprintf(line, sizeof line, "%.*s", length < sizeof line ? (int)length : 0, text);
+    int64_t whole = 0;
+    const size_t count = split_words(line, words, 4);
+    return count > 0 && (word_whole(words[0], &whole) || !word_number(words[0], &value));
 }
 
 BpParticleFormat bp_particle_format_find(const char *name, FILE *stream) {
@@ -103,7 +144,8 @@ BpParticleFormat bp_particle_format_find(const char *name, FILE *stream) {
         format_of_name(name) == BP_PARTICLES_PQR || strstr(text, "PQR file generated by") != NULL;
     if (format == BP_PARTICLES_PDB && is_pqr) format = BP_PARTICLES_PQR; /* their lines begin alike */
     if (format == BP_PARTICLES_NONE) format = format_of_name(name);
-    return format == BP_PARTICLES_NONE && has_data_header(begin) ? BP_PARTICLES_DATA : format;
+    if (format == BP_PARTICLES_NONE && has_data_header(begin)) return BP_PARTICLES_DATA;
+    return format == BP_PARTICLES_NONE && has_poscar_head(begin) ? BP_PARTICLES_POSCAR : format;
 }
 
 BpStatus bp_particle_file_open(FILE *stream, const char *name, BpParticleFormat format,
@@ -132,6 +174,10 @@ static void drop_state(BpParticleFile *file) {
         pdb_state_destroy(file->state);
     else if (file->format == BP_PARTICLES_CIF)
         cif_state_destroy(file->state);
+    else if (file->format == BP_PARTICLES_CRYSTAL)
+        crystal_state_destroy(file->state);
+    else if (file->format == BP_PARTICLES_POSCAR)
+        poscar_state_destroy(file->state);
     else if (file->format == BP_PARTICLES_CSV)
         csv_state_destroy(file->state);
     else
@@ -222,6 +268,10 @@ static bool has_more_frames(BpParticleFile *file) {
         return pdb_has_more(file->state, has_more_text(&file->input));
     case BP_PARTICLES_CIF:
         return cif_has_more(file->state);
+    case BP_PARTICLES_CRYSTAL:
+        return crystal_has_more(file->state);
+    case BP_PARTICLES_POSCAR:
+        return poscar_has_more(file->state, has_more_text(&file->input));
     case BP_PARTICLES_CSV:
         return csv_has_more(file->state);
     case BP_PARTICLES_GSD:

@@ -357,19 +357,25 @@ bool frame_take_ellipsoid(Particle *particle, const double half_axes[3]) {
     return !round;
 }
 
-void frame_cell_angles(BpParticleFile *file, const double lengths[3], const double angles[3]) {
-    static const double origin[3] = {0, 0, 0};
+bool frame_edges_of_angles(const double lengths[3], const double angles[3], double edges[3][3]) {
     const double a = lengths[0], b = lengths[1], c = lengths[2];
-    if (!(a > 1 && b > 1 && c > 1)) return;
     double cosine[3];
     for (int i = 0; i < 3; i++)
         cosine[i] = angles[i] == 90 ? 0 : cos(angles[i] * (PI / 180)); /* alpha, beta, gamma */
     const double sine = sqrt(1 - cosine[2] * cosine[2]);
     const double y = (cosine[0] - cosine[1] * cosine[2]) / sine;
     const double z = 1 - cosine[1] * cosine[1] - y * y;
-    if (!(sine > 0 && z > 0)) return;
-    const double edges[3][3] = {{a, 0, 0}, {b * cosine[2], b * sine, 0}, {c * cosine[1], c * y, c * sqrt(z)}};
-    frame_cell(file, origin, edges, FRAME_PERIODIC);
+    if (!(a > 0 && b > 0 && c > 0 && sine > 0 && z > 0)) return false;
+    const double found[3][3] = {{a, 0, 0}, {b * cosine[2], b * sine, 0}, {c * cosine[1], c * y, c * sqrt(z)}};
+    memcpy(edges, found, sizeof found);
+    return true;
+}
+
+void frame_cell_angles(BpParticleFile *file, const double lengths[3], const double angles[3]) {
+    static const double origin[3] = {0, 0, 0};
+    double edges[3][3];
+    if (lengths[0] > 1 && lengths[1] > 1 && lengths[2] > 1 && frame_edges_of_angles(lengths, angles, edges))
+        frame_cell(file, origin, (const double(*)[3])edges, FRAME_PERIODIC);
 }
 
 const char *frame_line_behind(BpParticleFile *file, char text[1024]) {

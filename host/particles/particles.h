@@ -3,10 +3,10 @@
  * In:    an open file, or a trajectory of many frames.   Out: one frame of points at a time.
  * Knows: which formats there are.   Does not know: scenes, how points look (style.h), how a file was found.
  *
- * Formats: XYZ (plain and extended), PDB, PQR, mmCIF, GRO, LAMMPS dump and data, GSD, CSV, PLY; each also
- * packed by gzip. Nothing in a file is trusted: memory grows with what was read and never with what a count
- * promises, and every error names the file, and the line where there are lines. A reader that has to guess
- * reports that in `notes`. Coordinates are as written, in the file's unit of length. */
+ * Formats: XYZ (plain and extended), PDB, PQR, mmCIF, CIF, POSCAR, GRO, LAMMPS dump and data, GSD, CSV, PLY;
+ * each also packed by gzip. Nothing in a file is trusted: memory grows with what was read and never with what
+ * a count promises, and every error names the file, and the line where there are lines. A reader that has to
+ * guess reports that in `notes`. Coordinates are as written, in the file's unit of length. */
 #ifndef BP_PARTICLES_PARTICLES_H
 #define BP_PARTICLES_PARTICLES_H
 
@@ -21,6 +21,8 @@ typedef enum BpParticleFormat {
     BP_PARTICLES_PDB,
     BP_PARTICLES_PQR,
     BP_PARTICLES_CIF,
+    BP_PARTICLES_CRYSTAL, /* a CIF file that turned out to be a crystal's */
+    BP_PARTICLES_POSCAR,
     BP_PARTICLES_GRO,
     BP_PARTICLES_DUMP,
     BP_PARTICLES_DATA,

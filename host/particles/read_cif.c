@@ -1,8 +1,8 @@
 /* read_cif.c: mmCIF: the atoms of _atom_site, the cell, and how the cell lies; see reader.h.
  *
- * Each model is a frame, and so is each data block that has atoms. The rows of models may stand in turns:
- * then the table is read once for each model. */
-#include "cif_token.h"
+ * A crystal's file is handed to read_crystal.c. Each model is a frame, and so is each data block that has
+ * atoms. The rows of models may stand in turns: then the table is read once for each model. */
+#include "cif_block.h"
 #include "crystal.h"
 #include "places.h"
 
@@ -160,14 +160,6 @@ static void put_cell(BpParticleFile *file, const Cell *cell) {
 
 /* ---- what stands around the atoms --------------------------------------------------------------------- */
 
-/* Crystals' files have shares of the cell for places. */
-static BpStatus refuse_fractions(const Input *input, const State *state, const char *name, BpError *err) {
-    if (state->found || strncasecmp(name, "_atom_site_fract_x", 18) != 0) return BP_OK;
-    return input_fail(input, true, err,
-                      "found fractions of a cell (_atom_site_fract_x), as CIF files of crystals have them, "
-                      "expected _atom_site.Cartn_x; convert the file, to extended XYZ for example");
-}
-
 static bool is_of_atoms(const char *name) {
     return strncasecmp(name, "_atom_site.", 11) == 0;
 }
@@ -209,7 +201,6 @@ static BpStatus take_loop(Input *input, State *state, BpError *err) {
         BP_TRY(peek(input, state, err));
         if (!cif_is_name(&state->tokens)) break;
         const char *const name = state->tokens.token;
-        BP_TRY(refuse_fractions(input, state, name, err));
         if (!atoms && is_of_atoms(name)) {
             atoms = true;
             state->single = false;
@@ -247,7 +238,6 @@ static BpStatus keep_value(const Input *input, State *state, int field, const ch
 static BpStatus take_item(Input *input, State *state, BpError *err) {
     char name[CIF_TEXT_SIZE];
     snprintf(name, sizeof name, "%s", state->tokens.token);
-    BP_TRY(refuse_fractions(input, state, name, err));
     state->pending = false;
     BP_TRY(peek(input, state, err));
     if (!cif_is_value(&state->tokens)) return BP_OK;
@@ -537,8 +527,31 @@ static BpStatus take_frame(BpParticleFile *file, State *state, BpError *err) {
     return take_turn(file, state, err);
 }
 
+/* Looks whether the first atoms are those of a crystal: their table has shares of a cell, or names of the
+ * core dictionary, and no _atom_site.Cartn_x. What is wrong before them is reported when the file is read. */
+static BpStatus find_kind(Input *input, bool *is_crystal, BpError *err) {
+    CifTokens tokens = {.lenient = true};
+    *is_crystal = false;
+    while (cif_next(&tokens, input, NULL) == BP_OK && tokens.token != NULL) {
+        if (!cif_is_name(&tokens)) {
+            if (*is_crystal) break;
+            continue;
+        }
+        const bool is_here = strcasecmp(tokens.token, "_atom_site.Cartn_x") == 0;
+        *is_crystal = !is_here && (*is_crystal || cif_block_has_places(tokens.token));
+        if (is_here) break;
+    }
+    return input_rewind(input, err);
+}
+
 BpStatus read_cif(BpParticleFile *file, bool *end, BpError *err) {
     Input *const input = &file->input;
+    bool is_crystal = false;
+    if (file->state == NULL) BP_TRY(find_kind(input, &is_crystal, err));
+    if (is_crystal) {
+        file->format = BP_PARTICLES_CRYSTAL;
+        return read_crystal(file, end, err);
+    }
     if (file->state == NULL) file->state = calloc(1, sizeof(State));
     State *const state = file->state;
     if (state == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
@@ -552,7 +565,8 @@ BpStatus read_cif(BpParticleFile *file, bool *end, BpError *err) {
     if (!state->held && !state->in_table && !state->in_turns)
         return input_fail(
             input, false, err,
-            "found no table _atom_site, expected an mmCIF file's atoms (loop_ _atom_site.Cartn_x ...)");
+            "found no table _atom_site, expected atoms (loop_ _atom_site.Cartn_x ... of a molecule, "
+            "_atom_site_fract_x ... of a crystal)");
     if (!state->found && state->in_table) BP_TRY(find_cell_behind(input, state, err));
     state->found = true;
     BP_TRY(take_frame(file, state, err));

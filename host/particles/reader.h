@@ -93,6 +93,8 @@ void atom_note_masses(BpParticles *particles, size_t known, size_t count, const 
 /* A cell from its lengths and angles in degrees (crystallography's convention: a along x, b in the plane of x
  * and y), its origin at 0. Cells that are none (lengths of 0 or 1, as placeholders) are passed over. */
 void frame_cell_angles(BpParticleFile *file, const double lengths[3], const double angles[3]);
+/* The edges of that cell, the rows, of any size. False: there is none of these lengths and angles. */
+bool frame_edges_of_angles(const double lengths[3], const double angles[3], double edges[3][3]);
 /* A cell from its edges, the rows, and which of them repeat. One without length does not; if those that do
  * span nothing, none does, and a note reports that. */
 void frame_cell(BpParticleFile *file, const double origin[3], const double edges[3][3],
@@ -107,17 +109,23 @@ void frame_note_shapes(BpParticleFile *file, uint64_t count, const char *kind);
 bool frame_take_ellipsoid(Particle *particle, const double half_axes[3]);
 
 typedef BpStatus ReadFrame(BpParticleFile *file, bool *end, BpError *err);
-ReadFrame read_xyz, read_pdb, read_cif, read_gro, read_dump, read_data, read_gsd, read_csv, read_ply;
+ReadFrame read_xyz, read_pdb, read_cif, read_crystal, read_poscar, read_gro, read_dump, read_data, read_gsd,
+    read_csv, read_ply;
 
 /* Releases what a GSD file's index takes. */
 void gsd_state_destroy(void *state);
-/* Release what the readers of tables, of PDB and of mmCIF files keep from frame to frame. */
+/* Release what the readers of tables, of PDB, of mmCIF, of crystals' and of VASP's files keep from frame to
+ * frame. */
 void csv_state_destroy(void *state);
 void pdb_state_destroy(void *state);
 void cif_state_destroy(void *state);
+void crystal_state_destroy(void *state);
+void poscar_state_destroy(void *state);
 /* Whether frames follow the first one, after which `text_follows` or not. */
 bool pdb_has_more(const void *state, bool text_follows);
 bool cif_has_more(const void *state);
+bool crystal_has_more(const void *state);
+bool poscar_has_more(const void *state, bool text_follows);
 bool csv_has_more(const void *state);
 BpStatus gsd_frame_count(BpParticleFile *file, uint64_t *count, BpError *err);
 

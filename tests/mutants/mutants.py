@@ -358,6 +358,43 @@ MUTANTS = [
     Mutant("molecules torn by thin cells", "the image of a bond was not followed", [
         patch("host/particles/molecules.c", "(int64_t)walk->move[i][e] + link->image[e];", "(int64_t)walk->move[i][e] + 0 * link->image[e];")],
            [test("test_bonds", "chains_are_made_whole")]),
+    # ---- files of crystals ------------------------------------------------------------------------------------
+    Mutant("shifts with the wrong sign", "1/2-x is no -1/2-x, but thirds are", [
+        patch("host/particles/symmetry.c", '*shift += sign * factor;', '*shift -= sign * factor;')],
+           [test("test_crystals", "thirds_are_thirds")]),
+    Mutant("letters with the wrong sign", "-x was read as x", [
+        patch("host/particles/symmetry.c", 'turn[axis] += sign * factor;', 'turn[axis] += factor;')],
+           [test("test_crystals", "operations_repeat_sites")]),
+    Mutant("a third of three digits", "0.667 stayed what it is, so images missed each other", [
+        patch("host/particles/symmetry.c", '    return shift - floor(shift);', '    return floor(shift * 1000) / 1000 - floor(shift);')],
+           [test("test_crystals", "thirds_are_thirds")]),
+    Mutant("no atom on a special position", "images were one atom only if their numbers were equal", [
+        patch("host/particles/read_crystal.c", 'return bp_dot(way, way) < DISORDER_SAME * DISORDER_SAME;', 'return bp_dot(way, way) <= 0;')],
+           [test("test_crystals", "special_places_are_one_atom")]),
+    Mutant("special positions inside the cell alone", "images across a side of the cell were two atoms", [
+        patch("host/particles/read_crystal.c", 'share[i] -= floor(share[i] + 0.5);', 'share[i] -= 0;')],
+           [test("test_crystals", "special_places_are_one_atom")]),
+    Mutant("the cell's columns for its edges", "the matrix of the cell was transposed", [
+        patch("host/particles/read_crystal.c", 'cell->edges[e][k];\n        BP_TRY(add_atom', 'cell->edges[k][e];\n        BP_TRY(add_atom')],
+           [test("test_crystals", "cells_lie_along_x")]),
+    Mutant("split sites twice", "atoms that share one occupancy were all shown", [
+        patch("host/particles/disorder.c", 'return occupancy <= FULL ? fmax(radii / 2, DISORDER_SAME) : DISORDER_SAME;', 'return occupancy <= 0 ? radii : DISORDER_SAME;')],
+           [test("test_crystals", "disorder_hides")]),
+    Mutant("groups that are all there", "disorder groups were not told apart", [
+        patch("host/particles/disorder.c", 'if (!groups[low].shown)', 'if (!groups[low].shown && count == 0)')],
+           [test("test_crystals", "disorder_hides")]),
+    Mutant("molecules on their own images", "a group about a symmetry element was shown with its image", [
+        patch("host/particles/disorder.c", "block->names.text[one->group][0] == '-' &&", "block->names.text[one->group][0] == '+' &&")],
+           [test("test_crystals", "disorder_hides")]),
+    Mutant("a volume for a scale", "the negative scale of a POSCAR was ignored", [
+        patch("host/particles/read_poscar.c", '*volume = !three && values[0] < 0 ? -values[0] : 0;', '*volume = 0;\n    for (int i = 0; i < 3 && !three; i++) scale[i] = fabs(values[0]);')],
+           [test("test_crystals", "scales_of_vasp")]),
+    Mutant("Cartesian places without the scale", "the scale of a POSCAR holds for its cell and its places", [
+        patch("host/particles/read_poscar.c", 'given[i] * state->scale[i] : 0;', 'given[i] : 0;')],
+           [test("test_crystals", "scales_of_vasp")]),
+    Mutant("one scale for three", "the three scales of a POSCAR are those of x, y and z", [
+        patch("host/particles/read_poscar.c", 'scale[i] = three ? values[i] :', 'scale[i] = three ? values[0] :')],
+           [test("test_crystals", "scales_of_vasp")]),
     # ---- files of meshes -------------------------------------------------------------------------------------
     Mutant("a fan from the second corner", "meshes: polygons cut from corner 1, as if it were corner 0",
            [patch("host/meshes/polygon.c", "put(cutter, vertices[0], vertices[n], vertices[n + 1]);", "put(cutter, vertices[1], vertices[n], vertices[n + 1]);")],

@@ -2,6 +2,10 @@
 
 python3 independent_molecules.py gemmi FILE [FRAME]        PDB and mmCIF
 python3 independent_molecules.py mdanalysis FILE [FRAME]   GRO and PQR
+python3 independent_molecules.py gemmi-crystal|ase-crystal FILE   CIF of crystals: [share, share, share, element] of each atom
+python3 independent_molecules.py gemmi-settings ""         every setting of a space group: its name, its operations
+python3 independent_molecules.py ase-poscar FOLDER         writes POSCAR files by ASE, and says what it reads in them
+python3 independent_molecules.py ase-folder ""             where ASE's own files of minerals are
 Exit code 77: the reader is not installed.
 """
 import json
@@ -46,8 +50,58 @@ def by_mdanalysis(path, frame):
             "charges": values("charges"), "radii": values("radii"), "cell": None if cell is None else cell.astype(float).tolist()}
 
 
+def crystal_by_gemmi(path, _):
+    import gemmi
+    for block in gemmi.cif.read(path):
+        crystal = gemmi.make_small_structure_from_block(block)
+        if crystal.sites:
+            break
+    return {"atoms": [[*site.fract.tolist(), {"X": "", "D": "H"}.get(site.element.name, site.element.name)]
+                      for site in crystal.get_all_unit_cell_sites()]}
+
+
+def crystal_by_ase(path, _):
+    import ase.io
+    atoms = ase.io.read(path, index=0)
+    return {"atoms": [[*share, symbol] for share, symbol in zip(atoms.get_scaled_positions().tolist(), atoms.get_chemical_symbols())]}
+
+
+def settings_of_gemmi(_, __):
+    import gemmi
+    return [[group.xhm(), [operation.triplet() for operation in group.operations()]] for group in gemmi.spacegroup_table()]
+
+
+def folder_of_ase(_, __):
+    import os
+    import ase.test
+    return os.path.join(os.path.dirname(ase.test.__file__), "testdata", "minerals")
+
+
+def poscars_of_ase(folder, _):
+    import os
+    import ase
+    import ase.io
+    import numpy
+    random, found = numpy.random.default_rng(4), []
+    for number in range(12):
+        atoms = ase.Atoms(numbers=random.choice([1, 8, 26, 79], 20), pbc=True, scaled_positions=random.uniform(-1, 2, (20, 3)),
+                          cell=random.uniform(-2, 2, (3, 3)) + 9 * numpy.eye(3))
+        path = os.path.join(folder, f"POSCAR{number}")
+        ase.io.write(path, atoms, format="vasp", direct=number % 2 == 0, sort=number % 3 == 0, vasp5=True)
+        scale = ["1.0", "1.3", "-700", "1.1 0.9 1.2"][number % 4]
+        with open(path, encoding="utf-8") as file:
+            lines = file.read().splitlines()
+        lines[1] = scale
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("\n".join(lines) + "\n")
+        read = ase.io.read(path, format="vasp")
+        found.append([path, {"cell": read.cell.tolist(), "places": read.get_positions().tolist(), "elements": read.get_chemical_symbols()}])
+    return found
+
+
 def main():
-    read = {"gemmi": by_gemmi, "mdanalysis": by_mdanalysis}[sys.argv[1]]
+    read = {"gemmi": by_gemmi, "mdanalysis": by_mdanalysis, "gemmi-crystal": crystal_by_gemmi, "ase-crystal": crystal_by_ase,
+            "gemmi-settings": settings_of_gemmi, "ase-poscar": poscars_of_ase, "ase-folder": folder_of_ase}[sys.argv[1]]
     try:
         print(json.dumps(read(sys.argv[2], int(sys.argv[3]) if len(sys.argv) > 3 else 0)))
     except ImportError:

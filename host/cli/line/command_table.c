@@ -17,7 +17,7 @@ const BpCommand bp_commands[] = {
         .description =
             "Renders each SCENE, a JSON document (see scenes/README.md; \"-\" is standard input, for "
             "every command that takes a scene), or a file of particles (.xyz, .pdb, .pqr, .cif, .gro, "
-            ".dump, .lammpstrj, .data, .gsd, .csv, .ply, and .gz of each; see docs/PARTICLES.md) or a "
+            "POSCAR, .dump, .lammpstrj, .data, .gsd, .csv, .ply, and .gz of each; see docs/PARTICLES.md) or a "
             "mesh (.ply with faces, .obj, .stl, .off, .gltf, .glb). The picture is named after the scene and "
             "written to "
             "the current folder, unless --output names "
@@ -229,9 +229,9 @@ const BpCommand bp_commands[] = {
         .description =
             "Prints, as a JSON document, the scene that `ballpark render FILE` would "
             "render, to standard output or with -o to a file. For a file of particles (XYZ, PDB, PQR, "
-            "mmCIF, GRO, LAMMPS dump and data, GSD, CSV, PLY; each also packed by gzip) or of a mesh "
-            "(PLY with faces, OBJ, STL, OFF, glTF), the document contains all choices: camera, light, style "
-            "or "
+            "mmCIF, CIF of crystals, POSCAR, GRO, LAMMPS dump and data, GSD, CSV, PLY; each also packed by "
+            "gzip) or of a mesh (PLY with faces, OBJ, STL, OFF, glTF), the document contains all choices: "
+            "camera, light, style or "
             "materials. "
             "Particles and meshes stay in their file, which the document names. docs/PARTICLES.md and "
             "scenes/README.md describe its members.",
