@@ -88,7 +88,9 @@ def poscars_of_ase(folder, _):
                           cell=random.uniform(-2, 2, (3, 3)) + 9 * numpy.eye(3))
         path = os.path.join(folder, f"POSCAR{number}")
         ase.io.write(path, atoms, format="vasp", direct=number % 2 == 0, sort=number % 3 == 0, vasp5=True)
-        scale = ["1.0", "1.3", "-700", "1.1 0.9 1.2"][number % 4]
+        # Version 3.22, for one, takes a negative scale for a factor, and of three the first.
+        new = [int(x) for x in ase.__version__.split(".")[:2]] >= [3, 29]
+        scale = ["1.0", "1.3", "-700" if new else "0.7", "1.1 0.9 1.2" if new else "2.5"][number % 4]
         with open(path, encoding="utf-8") as file:
             lines = file.read().splitlines()
         lines[1] = scale

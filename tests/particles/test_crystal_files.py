@@ -524,6 +524,8 @@ class Independent(CrystalTest):
     def test_real_files(self):
         """Minerals of the Crystallography Open Database, which come with ASE."""
         folder = self.ask("ase-folder", "")
+        if not os.path.isdir(folder):
+            self.skipTest("this version of ASE has no minerals")
         paths = sorted(os.path.join(folder, name) for name in os.listdir(folder) if name.endswith(".cif"))
         self.assertGreater(len(paths), 3)
         for path in paths:

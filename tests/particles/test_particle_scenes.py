@@ -459,6 +459,36 @@ class Scenes(ProgramTest):
             "".join(f"{e} {n.strip()} ALA A {x} {y} {z}\n" for n, e, (x, y, z) in atoms))
         self.assert_same(self.picture("a.pdb"), self.picture("a.cif"))
 
+    def test_crystals(self):
+        """Rock salt as CIF and as POSCAR is one picture; its cell has four atoms of each kind and 24 bonds, half of them across its sides."""
+        places = [(0, 0, 0), (0, 0.5, 0.5), (0.5, 0, 0.5), (0.5, 0.5, 0)]
+        operations = "".join(f"'{x}+x, {y}+y, {z}+z'\n" for x, y, z in places)
+        cell = "".join(f"_cell_length_{edge} 5.64\n" for edge in "abc") + "".join(f"_cell_angle_{angle} 90\n" for angle in ("alpha", "beta", "gamma"))
+        sites = "loop_\n_atom_site_label\n_atom_site_fract_x\n_atom_site_fract_y\n_atom_site_fract_z\n_atom_site_occupancy\n"
+        text = "data_salt\n" + cell + "loop_\n_space_group_symop_operation_xyz\n" + operations + sites + "Na1 0 0 0 1.0\nCl1 0.5 0.5 0.5 1.0\n"
+        self.write("salt.cif", text)
+        chlorine = [tuple((share + 0.5) % 1 for share in place) for place in places]
+        rows = "".join("{} {} {}\n".format(*place) for place in places + chlorine)
+        head = "salt\n5.64\n1 0 0\n0 1 0\n0 0 1\nNa Cl\n4 4\n"
+        self.write("POSCAR", head + "Direct\n" + rows)
+        pictures = []
+        for name, says in ("salt.cif", "8 particles; 2 sites by 4 symmetry operations; van der Waals radii"), ("POSCAR", "8 particles; van der Waals radii"):
+            self.document_with({"file": name, "style": "ball-and-stick", "box": True})
+            self.assertIn(says, self.notes(name).replace("\n  ", " "))
+            self.assertIn("12 bonds by distance, 12 across the cell not drawn", self.notes("x.json").replace("\n  ", " "))
+            self.assertEqual(self.shapes("x.json"), (8, 24))
+            pictures.append(self.picture("x.json"))
+        self.assertEqual(pictures[0], pictures[1])
+        # Two elements at one place: one is drawn.
+        self.write("mixed.cif", text.replace("Na1 0 0 0 1.0", "Na1 0 0 0 0.6\nK1 0 0 0 0.4"))
+        self.assertIn("8 of 12 particles; hidden: 4 in alternative places", self.notes("mixed.cif").replace("\n  ", " "))
+        self.assertEqual(self.picture("mixed.cif"), self.picture("salt.cif"))
+        self.fail_with(2, "render", self.write("bare.cif", "data_x\n_space_group_name_H-M_alt 'F m -3 m'\n" + cell + sites + "Na1 0 0 0 1\n"),
+                       says=["bare.cif:2", "without its operations", "ASE adds them"])
+        self.write("XDATCAR", head + "Direct configuration=     1\n" + rows + "Direct configuration=     2\n" + rows.replace("0 0 0\n", "0.1 0 0\n"))
+        self.succeed("render", "XDATCAR", *SIZE, "--frames", "::", "-o", "f.pfm")
+        self.assertNotEqual(self.read("f-0000.pfm"), self.read("f-0001.pfm"))
+
     def test_every_command_takes_particles(self):
         self.write("a.xyz", ATOMS)
         self.succeed("explain", "a.xyz")
