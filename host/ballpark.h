@@ -378,7 +378,7 @@ typedef enum BpCaustics {
 
 /* Whether deep paths that carry little end by chance, and those that go on carry more instead (Russian
  * roulette). Pictures take less time and have hardly more noise. Both converge to the same picture. */
-typedef enum BpRoulette { BP_ROULETTE_OFF, BP_ROULETTE_ON } BpRoulette;
+typedef enum BpRoulette { BP_ROULETTE_ON, BP_ROULETTE_OFF } BpRoulette;
 
 /* Start from bp_render_defaults(). */
 typedef struct BpRenderOptions {

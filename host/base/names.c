@@ -17,7 +17,7 @@ BP_WORDS_ENDED(BpLightSampling, const char *const bp_light_sampling_names, LIGHT
 #define CAUSTICS_WORDS(X) X(BP_CAUSTICS_AUTO, "auto") X(BP_CAUSTICS_OFF, "off") X(BP_CAUSTICS_ON, "on")
 BP_WORDS_ENDED(BpCaustics, const char *const bp_caustics_names, CAUSTICS_WORDS);
 
-#define ROULETTE_WORDS(X) X(BP_ROULETTE_OFF, "off") X(BP_ROULETTE_ON, "on")
+#define ROULETTE_WORDS(X) X(BP_ROULETTE_ON, "on") X(BP_ROULETTE_OFF, "off")
 BP_WORDS_ENDED(BpRoulette, const char *const bp_roulette_names, ROULETTE_WORDS);
 
 #define NUMERICS_WORDS(X) X(BP_NUMERICS_ROBUST, "robust") X(BP_NUMERICS_PLAIN, "plain")

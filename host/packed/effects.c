@@ -440,6 +440,8 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     else
         effects->caustics = bp_focusers_explain(scene, size, effects->reason[BP_EFFECT_CAUSTICS]);
     effects->dims = explain_roulette(scene, size, effects->reason[BP_EFFECT_ROULETTE]);
+    if (effects->dims && scene->camera.max_depth > ROULETTE_SEGMENTS)
+        effects->bits |= 1u << BP_EFFECT_ROULETTE;
 }
 
 size_t bp_effect_count(void) {

@@ -57,7 +57,7 @@ typedef struct BpEffects {
     uint32_t bits;        /* bit e set: effect e is simulated */
     bool triangles_alone; /* and no code for spheres, unless options ask for more */
     bool caustics;        /* CAUSTICS is simulated too, if the options enable it */
-    bool dims;            /* paths may come to carry little: ROULETTE can be simulated */
+    bool dims; /* paths may come to carry little: ROULETTE is simulated if options let them be deep */
     char reason[BP_EFFECT_COUNT][160];
 } BpEffects;
 

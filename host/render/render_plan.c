@@ -67,8 +67,9 @@ BpLightSampling bp_render_light_sampling(const BpScene *scene, const BpRenderOpt
 }
 
 static uint32_t choose_effects(const BpEffects *effects, const BpRenderOptions *options) {
-    uint32_t wanted =
-        options->all_effects ? BP_EFFECTS_ALL : effects->bits | (options->extra_effects & BP_EFFECTS_ALL);
+    /* The scene may say another depth than the options. */
+    const uint32_t own = effects->bits & ~(1u << BP_EFFECT_ROULETTE);
+    uint32_t wanted = options->all_effects ? BP_EFFECTS_ALL : own | (options->extra_effects & BP_EFFECTS_ALL);
     if (bp_render_caustics_of(effects, options) == BP_CAUSTICS_ON) wanted |= 1u << BP_EFFECT_CAUSTICS;
     if (options->roulette == BP_ROULETTE_OFF) wanted &= ~(1u << BP_EFFECT_ROULETTE);
     if (bp_render_roulette_of(effects, options) == BP_ROULETTE_ON) wanted |= 1u << BP_EFFECT_ROULETTE;

@@ -152,7 +152,7 @@ FORMATS = ["png", "ppm", "ppm-ascii", "pfm", "exr", "bpa"]
 DEVICE_TYPES = ["cpu", "gpu", "other"]
 CHOICES = {"precision": ["single", "double"], "math": ["strict", "fast"], "numerics": ["robust", "plain"],
            "sampler": ["independent", "sobol"], "light_sampling": ["on", "off"], "caustics": ["auto", "off", "on"],
-           "roulette": ["off", "on"], "kernel": ["auto", "sample", "packet", "pool"]}
+           "roulette": ["on", "off"], "kernel": ["auto", "sample", "packet", "pool"]}
 
 _HANDLE = c.POINTER(c.c_void_p)
 _ERR = c.POINTER(BpError)

@@ -96,7 +96,7 @@ class Render:
                  time: typing.Optional[float] = None, seed: int = 0, depth: typing.Optional[int] = None,
                  first_sample: int = 0, device: typing.Union[None, int, str] = None, sampler: str = "sobol",
                  precision: str = "single", math: str = "strict", numerics: str = "robust", light_sampling: str = "on",
-                 caustics: str = "auto", roulette: str = "off", kernel: str = "auto", adaptive: bool = False, aovs: bool = False, threads: int = 0,
+                 caustics: str = "auto", roulette: str = "on", kernel: str = "auto", adaptive: bool = False, aovs: bool = False, threads: int = 0,
                  force: bool = False):
         if not isinstance(scene, Scene):
             raise wrong_type("ballpark.Render", scene, "a Scene, such as ballpark.make_scene() returns")

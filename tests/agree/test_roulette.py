@@ -86,11 +86,12 @@ def check_path(document, pixel, sample, *options):
     """How often roulette was played on one path, and whether it ended it; every chance and decision is right."""
     path, depth = steps_of(document, pixel, sample, *ON, *options), document["camera"]["max_depth"]
     width, steps, played = document["camera"]["image_width"], path["steps"], 0
+    albedo, clear = document["materials"]["room"]["albedo"], "medium" not in document
     carried = [1, 1, 1]  # without the weights of flights
     for place, step in enumerate(steps):
         if step["met"]:
-            carried = [c * a for c, a in zip(carried, ALBEDO)]
-        most, segments = max(carried), place + 1
+            carried = [c * a for c, a in zip(carried, albedo)]
+        most, segments = max(step["throughput"] if clear else carried), place + 1
         goes_on = step.get("goes_on", step.get("scattered", False))
         due = goes_on and SEGMENTS <= segments < depth and most < LIMIT
         if abs(most / LIMIT - 1) > 1e-5:  # floats have rounded
@@ -100,15 +101,15 @@ def check_path(document, pixel, sample, *options):
         played += 1
         steps_of_chance = step["roulette"]["chance"] * 2 ** 24
         chance = round(steps_of_chance)
-        slack = 1e-3 + 1e-5 * chance
+        slack = 1e-3 + (0 if clear else 1e-5 * chance)
         assert abs(steps_of_chance - chance) < 1e-3 and -slack < chance - most / LIMIT * 2 ** 24 < 1 + slack, \
             f"step {segments}: {carried} gives {step}"
         carried = [c * 2 ** 24 / chance for c in carried]
         lives = number(pixel[1] * width + pixel[0], sample, 16 + 16 * place + 6) < chance
         assert step["roulette"]["goes_on"] == lives, f"step {segments}: {step}"
         assert lives == (segments < len(steps)), f"step {segments} of {len(steps)}"
-        if lives and "medium" not in document:
-            after = [t * a * 2 ** 24 / chance for t, a in zip(step["throughput"], ALBEDO)]
+        if lives and clear:
+            after = [t * a * 2 ** 24 / chance for t, a in zip(step["throughput"], albedo)]
             now = steps[place + 1]["throughput"]
             assert all(abs(a - b) <= 1e-5 * max(now) for a, b in zip(after, now)), f"step {segments}: {after}, not {now}"
     return played, bool(played) and "roulette" in steps[-1] and not steps[-1]["roulette"]["goes_on"]
@@ -127,6 +128,8 @@ def chances():
     assert plays > 10 and ends == 6, (plays, ends)
     short = room(camera={**ROOM["camera"], "max_depth": SEGMENTS})
     assert check_path(short, (3, 5), 0)[0] == 0
+    dark = room(materials={"room": {**ROOM["materials"]["room"], "albedo": [0.3, 0.5, 0.2]}})
+    assert check_path(dark, (3, 5), 0)[0] > 0  # from the first segment that counts
     assert not any("roulette" in step for step in steps_of(ROOM, (3, 5), 0, *OFF)["steps"])
     return f"{plays} plays on six paths"
 

@@ -62,7 +62,7 @@ class Discs(ProgramTest):
             found[lamps] = json.loads(self.read(f"{lamps}.json"))
             self.assertEqual(found[lamps]["light_sampling"], lamps)
         on, off = found["on"], found["off"]
-        self.assertEqual(on["effects"], ["lambertian", "light_sampling", "discs"])
+        self.assertEqual(on["effects"], ["lambertian", "light_sampling", "discs", "roulette"])
         for member in ("rays", "cut_paths", "invalid_samples"):
             self.assertEqual(on[member], off[member])
         self.assertGreater(off["nrmse"], 3 * on["nrmse"])

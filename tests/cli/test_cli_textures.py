@@ -71,7 +71,7 @@ class Textures(ProgramTest):
         self.assertRegex(table, r"textures +out +no material has a texture")
         self.assertRegex(table, r"noise +out +no material has a texture of noise")
         self.succeed("render", "s.json", "-q", "-o", "x.png", "--stats", "x.json")
-        self.assertEqual(json.loads(self.read("x.json"))["effects"], ["metal", "emission", "textures", "noise"])
+        self.assertEqual(json.loads(self.read("x.json"))["effects"], ["metal", "emission", "textures", "noise", "roulette"])
 
     def test_one_path_is_the_picture(self):
         """What `explain --pixel` follows has textures too."""

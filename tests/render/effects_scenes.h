@@ -47,7 +47,8 @@ static const CoveringRule effects_rules[] = {
     {EFFECT_BIT(LAMPS), EFFECTS_LIGHTS},
     {EFFECT_BIT(LAMPS), EFFECTS_LIT},
     {EFFECT_BIT(CAUSTICS), 0}, /* only where it is asked for: tests/lamps */
-    {EFFECT_BIT(ROULETTE), 0}, /* likewise */
+    /* Something keeps light; what is matte or metal does here. */
+    {EFFECT_BIT(ROULETTE), EFFECTS_LIT},
     /* A tree needs spheres, and spheres need a material. Textures are of spheres, and spheres move. */
     {EFFECTS_TREE, MATERIAL_EFFECTS},
     {EFFECT_BIT(TEXTURES), MATERIAL_EFFECTS},
@@ -323,7 +324,7 @@ static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
                                .height = 17,
                                .aspect_ratio = 33.0 / 17.0,
                                .samples_per_pixel = 6,
-                               .max_depth = 12,
+                               .max_depth = bp_effects_has(bits, BP_EFFECT_ROULETTE) ? 30 : 8,
                                .vfov_degrees = 60,
                                .lookat = {0, 0, -1},
                                .vup = {0, 1, 0},

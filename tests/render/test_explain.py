@@ -58,10 +58,10 @@ if "--measure" in sys.argv:
 table = run("explain", scenes / "v4-13-metal.json", "--wide").stdout.splitlines()
 rows = {line.split()[0]: line.split(maxsplit=2)[1:] for line in table[1:len(ALL) + 1]}
 assert list(rows) == ALL, table
-assert [name for name in ALL if rows[name][0] == "in"] == ["lambertian", "metal"], table
+assert [name for name in ALL if rows[name][0] == "in"] == ["lambertian", "metal", "roulette"], table
 assert all(rows[name][0] in ("in", "out") and len(rows[name][1]) > 10 for name in ALL), table
 assert "no dielectric among the 4 materials in use" in rows["dielectric"][1]
-assert f"2 of {len(ALL)} effects" in table[len(ALL) + 1]
+assert f"3 of {len(ALL)} effects" in table[len(ALL) + 1]
 assert table[len(ALL) + 2].split(maxsplit=2) == ["acceleration", "list", "4 spheres: a list, no tree"], table
 
 # JSON of all scenes says what the tables say, one entry a scene, in the order given.

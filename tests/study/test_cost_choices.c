@@ -211,6 +211,15 @@ static void test_configurations(void **state) {
     assert_string_equal(configurations[0].command, "--sampler independent --depth 10");
     assert_string_equal(find(configurations, count, "Sobol samples")->command, "--depth 10");
     assert_string_equal(find(configurations, count, "depth 50")->command, "--sampler independent");
+
+    /* Roulette is one where paths can be deep. */
+    bp_render_defaults(matte, &base);
+    count = bp_study_configurations(matte, &base, true, configurations);
+    assert_null(find(configurations, count, "roulette for deep paths")); /* that is the base */
+    assert_non_null(strstr(find(configurations, count, "deep paths traced on")->command, "--roulette off"));
+    base.max_depth = 8;
+    count = bp_study_configurations(matte, &base, true, configurations);
+    assert_null(find(configurations, count, "deep paths traced on"));
     bp_scene_destroy(&glass);
     bp_scene_destroy(&matte);
 

@@ -135,8 +135,8 @@ enum {
                   "away more noise than their time costs",                                                   \
                   BpCaustics, caustics, BP_CHOICE("", bp_caustics_names, 0))                                 \
     RENDER_OPTION(ROULETTE, "roulette", 0, BP_TRACERS,                                                       \
-                  "on: deep paths that carry little end by chance, and the others stand for them",           \
-                  BpRoulette, roulette, BP_CHOICE("", bp_roulette_names, 0))                                 \
+                  "off: deep paths that carry little are traced on, for comparison", BpRoulette, roulette,   \
+                  BP_CHOICE("", bp_roulette_names, 0))                                                       \
     RENDER_OPTION(ADAPTIVE, "adaptive", 0, BP_RENDER,                                                        \
                   "give noisy pixels more samples and the others fewer; --spp is then the mean", bool,       \
                   adaptive, BP_FLAG)                                                                         \
@@ -232,7 +232,7 @@ enum {
     NOTE(LIGHT_SAMPLING, BP_CHECK, NULL, "both are checked")                                                 \
     NOTE(CAUSTICS, BP_TRACERS, NULL, "auto")                                                                 \
     NOTE(CAUSTICS, BP_CHECK, NULL, "both are checked")                                                       \
-    NOTE(ROULETTE, BP_TRACERS, NULL, "off")                                                                  \
+    NOTE(ROULETTE, BP_TRACERS, NULL, "on where paths may be deep")                                           \
     NOTE(CAUSTICS, BP_VIEW, NULL, "off")                                                                     \
     NOTE(SPP, BP_RENDER, NULL, "the scene's number")                                                         \
     NOTE(SPP, BP_CHECK, NULL, "1024")                                                                        \
