@@ -101,8 +101,8 @@ def check_path(document, pixel, sample, *options):
         played += 1
         steps_of_chance = step["roulette"]["chance"] * 2 ** 24
         chance = round(steps_of_chance)
-        slack = 1e-3 + (0 if clear else 1e-5 * chance)
-        assert abs(steps_of_chance - chance) < 1e-3 and -slack < chance - most / LIMIT * 2 ** 24 < 1 + slack, \
+        slack = 1e-3 if clear else 1e-3 + 1e-5 * chance
+        assert abs(steps_of_chance - chance) < 1e-3 and (slack if clear else -slack) < chance - most / LIMIT * 2 ** 24 < 1 + slack, \
             f"step {segments}: {carried} gives {step}"
         carried = [c * 2 ** 24 / chance for c in carried]
         lives = number(pixel[1] * width + pixel[0], sample, 16 + 16 * place + 6) < chance
