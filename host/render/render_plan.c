@@ -50,8 +50,13 @@ BpCaustics bp_render_caustics(const BpScene *scene, const BpRenderOptions *optio
     return bp_render_caustics_of(&effects, options);
 }
 
+/* Whether a path can be as deep as roulette begins, and carry less by then. */
+static bool may_play(const BpEffects *effects, const BpRenderOptions *options) {
+    return effects->dims && options->max_depth > ROULETTE_SEGMENTS;
+}
+
 BpRoulette bp_render_roulette_of(const BpEffects *effects, const BpRenderOptions *options) {
-    return effects->dims && options->max_depth > ROULETTE_SEGMENTS ? options->roulette : BP_ROULETTE_OFF;
+    return may_play(effects, options) ? options->roulette : BP_ROULETTE_OFF;
 }
 
 BpRoulette bp_render_roulette(const BpScene *scene, const BpRenderOptions *options) {
@@ -71,8 +76,11 @@ static uint32_t choose_effects(const BpEffects *effects, const BpRenderOptions *
     const uint32_t own = effects->bits & ~(1u << BP_EFFECT_ROULETTE);
     uint32_t wanted = options->all_effects ? BP_EFFECTS_ALL : own | (options->extra_effects & BP_EFFECTS_ALL);
     if (bp_render_caustics_of(effects, options) == BP_CAUSTICS_ON) wanted |= 1u << BP_EFFECT_CAUSTICS;
-    if (options->roulette == BP_ROULETTE_OFF) wanted &= ~(1u << BP_EFFECT_ROULETTE);
-    if (bp_render_roulette_of(effects, options) == BP_ROULETTE_ON) wanted |= 1u << BP_EFFECT_ROULETTE;
+    /* Where it is never played, the general kernel is the same for all scenes. */
+    if (may_play(effects, options)) {
+        wanted &= ~(1u << BP_EFFECT_ROULETTE);
+        if (options->roulette == BP_ROULETTE_ON) wanted |= 1u << BP_EFFECT_ROULETTE;
+    }
     if (options->light_sampling == BP_LIGHT_SAMPLING_OFF)
         wanted &= ~(1u << BP_EFFECT_LAMPS | 1u << BP_EFFECT_CAUSTICS | 1u << BP_EFFECT_TRIANGLE_LAMPS);
     return wanted;

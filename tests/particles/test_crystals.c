@@ -28,7 +28,7 @@ static void read_text(const char *text, BpParticleFormat format, BpParticles *pa
     assert_int_equal(fwrite(text, 1, strlen(text), stream), strlen(text));
     assert_int_equal(fflush(stream), 0);
     *particles = (BpParticles){0};
-    assert_int_equal(bp_particle_file_open(stream, "a", format, NULL, 0, &file, &err), BP_OK);
+    assert_int_equal(bp_particle_file_open(stream, "a", format, NULL, 0, 0, &file, &err), BP_OK);
     const BpStatus status = bp_particle_file_next(file, particles, &end, &err);
     if (status != BP_OK) fail_msg("%s", err.message);
     bp_particle_file_close(&file);
