@@ -30,7 +30,7 @@ def ours(path, folder):
     # the general kernel, so that one is compiled instead of one a scene; its pictures are those of the others
     stats = os.path.join(folder, "stats.json")
     subprocess.run([program, "render", path, "--width", "160", "--spp", str(SAMPLES), "--sampler", "independent", "--seed",
-                    "77", "--effects", "all", "-o", os.path.join(folder, "x.pfm"), "--stats", stats, "--quiet"], check=True)
+                    "77", "--effects", "all", "--roulette", "off", "-o", os.path.join(folder, "x.pfm"), "--stats", stats, "--quiet"], check=True)
     with open(stats) as file:
         figures = json.load(file)
     return figures["mean_radiance"], figures["rays"] / figures["samples"]

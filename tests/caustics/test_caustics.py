@@ -334,7 +334,7 @@ def same(name, scene, spp, seeds=8):
     """The means with and without, of pictures with independent seeds, are a few of their standard errors apart."""
     def means(word, first):
         for seed in range(first, first + seeds):
-            numbers = read_pfm(picture(scene, "--spp", str(spp), "--seed", str(seed), "--caustics", word))[2]
+            numbers = read_pfm(picture(scene, "--spp", str(spp), "--seed", str(seed), "--caustics", word, "--roulette", "off"))[2]
             yield sum(numbers) / len(numbers)
 
     a, da = by_chance(name, lambda: list(means("off", 0)))

@@ -127,6 +127,7 @@ static Paths trace(const char *name) {
     BpScene *scene = load_scene(path, WIDTH);
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
+    options.roulette = BP_ROULETTE_OFF; /* which is not played at small depths */
     options.samples_per_pixel = SAMPLES;
     const uint32_t depth = options.max_depth;
     assert_in_range(depth, 1, DEPTH_MAX);

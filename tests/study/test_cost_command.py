@@ -61,7 +61,7 @@ class Cost(ProgramTest):
         result = self.glass()
         self.assertEqual((result["width"], result["height"]), (32, 32))
         self.assertEqual({s["axis"] for s in result["series"]},
-                         {"base", "truth", "sampler", "adaptive", "depth", "precision", "math", "numerics", "fresnel", "together"})
+                         {"base", "truth", "sampler", "adaptive", "depth", "precision", "math", "numerics", "roulette", "fresnel", "together"})
         base, truth = result["series"][:2]
         self.assertIsNone(self.series["adaptive samples"]["time_ratio"]["value"])
         points = [p for s in result["series"] for p in s["points"]]
@@ -107,7 +107,7 @@ class Cost(ProgramTest):
 
     @deep
     def test_bias_that_is_known(self):
-        result = self.study(FURNACE, "--time", "1")
+        result = self.study(FURNACE, "--time", "1", "--roulette", "off")  # every sample is known
         self.assertAlmostEqual(result["brightness"], 2, delta=1e-6)
         for depth in (5, 10):
             series = self.series[f"depth {depth}"]
