@@ -30,9 +30,9 @@ static double brightest(const BpScene *scene, uint64_t first) {
     assert_int_equal(film->invalid_samples, 0);
     assert_int_equal(film->replicates, 4);
     const double bound = bp_scene_radiance_bound(scene, options.max_depth, BP_LIGHT_SAMPLING_ON,
-                                                 BP_CAUSTICS_ON, BP_ROULETTE_OFF);
+                                                 BP_CAUSTICS_ON, film->roulette);
     assert_int_equal(film->scale_log2, bp_film_scale(scene, options.max_depth, BP_LIGHT_SAMPLING_ON,
-                                                     BP_CAUSTICS_ON, BP_ROULETTE_OFF));
+                                                     BP_CAUSTICS_ON, film->roulette));
     assert_true(ldexp(bound, film->scale_log2) <= 0x1p38);
     const size_t cells = (size_t)film->width * film->height * film->replicates;
     double most = 0;
