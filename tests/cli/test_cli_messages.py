@@ -96,7 +96,7 @@ class Messages(ProgramTest):
 
     CONVERT = "convert it, with ASE or MDAnalysis, to extended XYZ"
     TABLE = "convert it, to CSV or PLY"
-    MESH = "give the path of a file named .ply, .obj, .stl or .off"
+    MESH = "give the path of a file named .ply, .obj, .stl, .off, .gltf or .glb"
     FILES = (("a.mtl", b"newmtl a\nKd 1 1 1\n", "the materials of a mesh (MTL)", MESH),
              ("a.xtc", struct.pack(">ii", 1995, 3) + bytes(90), "a trajectory of GROMACS (XTC)", CONVERT),
              ("unnamed", struct.pack(">ii", 1993, 3) + bytes(90), "a trajectory of GROMACS (TRR)", CONVERT),
