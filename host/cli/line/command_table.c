@@ -17,7 +17,8 @@ const BpCommand bp_commands[] = {
         .description =
             "Renders each SCENE, a JSON document (see scenes/README.md; \"-\" is standard input, for "
             "every command that takes a scene), or a file of particles (.xyz, .pdb, .pqr, .cif, .gro, "
-            "POSCAR, .dump, .lammpstrj, .data, .gsd, .csv, .ply, and .gz of each; see docs/PARTICLES.md) or a "
+            "POSCAR, .dump, .lammpstrj, .data, .gsd, .csv, .ply, and .gz of each; see docs/PARTICLES.md) or "
+            "a "
             "mesh (.ply with faces, .obj, .stl, .off, .gltf, .glb). The picture is named after the scene and "
             "written to "
             "the current folder, unless --output names "
