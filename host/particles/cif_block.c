@@ -91,17 +91,6 @@ typedef struct Row {
     bool given[SITE_FIELDS];
 } Row;
 
-static BpStatus peek(CifReading *reading, Input *input, BpError *err) {
-    if (reading->pending) return BP_OK;
-    BP_TRY(cif_next(&reading->tokens, input, err));
-    reading->pending = true;
-    return BP_OK;
-}
-
-static bool is_word(const CifReading *reading, const char *word, size_t length) {
-    return cif_is_keyword(&reading->tokens) && strncasecmp(reading->tokens.token, word, length) == 0;
-}
-
 static BpStatus take_operation(const Input *input, Symmetry *symmetry, const char *text, BpError *err) {
     Operation operation;
     if (!symmetry_parse(text, &operation))
@@ -214,7 +203,7 @@ static bool is_site(const Row *row) {
 static BpStatus take_row(CifReading *reading, Input *input, CifBlock *block, Row *row, const int *field,
                          size_t columns, BpError *err) {
     for (size_t c = 0; c < columns; c++) {
-        BP_TRY(peek(reading, input, err));
+        BP_TRY(cif_peek(&reading->tokens, input, err));
         if (!cif_is_value(&reading->tokens))
             return input_fail(
                 input, true, err,
@@ -223,7 +212,7 @@ static BpStatus take_row(CifReading *reading, Input *input, CifBlock *block, Row
                 reading->tokens.token == NULL ? "the end of the file" : "a name", columns);
         BP_TRY(take_value(input, block, row, c < COLUMNS_MAX ? field[c] : FIELD_COUNT, reading->tokens.token,
                           err));
-        reading->pending = false;
+        cif_take(&reading->tokens);
     }
     return is_site(row) ? add_site(input, block, row, err) : BP_OK;
 }
@@ -233,7 +222,7 @@ static BpStatus take_loop(CifReading *reading, Input *input, CifBlock *block, Ro
     size_t columns = 0;
     bool is_read = false;
     for (;; columns++) {
-        BP_TRY(peek(reading, input, err));
+        BP_TRY(cif_peek(&reading->tokens, input, err));
         if (!cif_is_name(&reading->tokens)) break;
         const int found = field_of(reading->tokens.token);
         if (found < FIELD_COUNT && columns >= COLUMNS_MAX)
@@ -241,13 +230,13 @@ static BpStatus take_loop(CifReading *reading, Input *input, CifBlock *block, Ro
                               COLUMNS_MAX);
         if (columns < COLUMNS_MAX) field[columns] = found;
         is_read |= found < FIELD_COUNT;
-        reading->pending = false;
+        cif_take(&reading->tokens);
     }
     for (;;) {
-        BP_TRY(peek(reading, input, err));
+        BP_TRY(cif_peek(&reading->tokens, input, err));
         if (!cif_is_value(&reading->tokens)) return BP_OK;
         if (!is_read) {
-            reading->pending = false;
+            cif_take(&reading->tokens);
             continue;
         }
         for (int f = 0; f < SITE_FIELDS; f++) row->text[f][0] = '\0';
@@ -256,41 +245,30 @@ static BpStatus take_loop(CifReading *reading, Input *input, CifBlock *block, Ro
     }
 }
 
-/* A save frame, as dictionaries have them, holds no crystal. */
-static BpStatus skip_save_frame(CifReading *reading, Input *input, BpError *err) {
-    const bool opens = reading->tokens.token[5] != '\0';
-    do {
-        reading->pending = false;
-        BP_TRY(peek(reading, input, err));
-    } while (opens && reading->tokens.token != NULL && !is_word(reading, "save_", 5));
-    if (opens) reading->pending = false;
-    return BP_OK;
-}
-
 static BpStatus take_item(CifReading *reading, Input *input, CifBlock *block, Row *items, BpError *err) {
     const int field = field_of(reading->tokens.token);
-    reading->pending = false;
+    cif_take(&reading->tokens);
     reading->tokens.lenient = field >= FIELD_COUNT;
-    const BpStatus status = peek(reading, input, err);
+    const BpStatus status = cif_peek(&reading->tokens, input, err);
     reading->tokens.lenient = false;
     BP_TRY(status);
     if (!cif_is_value(&reading->tokens)) return BP_OK;
-    reading->pending = false;
+    cif_take(&reading->tokens);
     return take_value(input, block, items, field, reading->tokens.token, err);
 }
 
 static BpStatus take_next(CifReading *reading, Input *input, CifBlock *block, Row rows[2], BpError *err) {
-    if (is_word(reading, "save_", 5)) return skip_save_frame(reading, input, err);
+    if (cif_opens(&reading->tokens, "save_")) return cif_skip_save_frame(&reading->tokens, input, err);
     if (cif_is_name(&reading->tokens)) return take_item(reading, input, block, &rows[0], err);
-    const bool loop = is_word(reading, "loop_", 5);
-    reading->pending = false;
+    const bool loop = cif_opens(&reading->tokens, "loop_");
+    cif_take(&reading->tokens);
     return loop ? take_loop(reading, input, block, &rows[1], err) : BP_OK;
 }
 
 static BpStatus take_block(CifReading *reading, Input *input, CifBlock *block, Row rows[2], BpError *err) {
     for (;;) {
-        BP_TRY(peek(reading, input, err));
-        if (reading->tokens.token == NULL || is_word(reading, "data_", 5)) break;
+        BP_TRY(cif_peek(&reading->tokens, input, err));
+        if (reading->tokens.token == NULL || cif_opens(&reading->tokens, "data_")) break;
         BP_TRY(take_next(reading, input, block, rows, err));
     }
     /* A table of one row may be written as items. */
@@ -299,10 +277,10 @@ static BpStatus take_block(CifReading *reading, Input *input, CifBlock *block, R
 
 BpStatus cif_block_read(CifReading *reading, Input *input, CifBlock *block, bool *end, BpError *err) {
     cif_block_clear(block);
-    BP_TRY(peek(reading, input, err));
+    BP_TRY(cif_peek(&reading->tokens, input, err));
     *end = reading->tokens.token == NULL;
     if (*end) return BP_OK;
-    if (is_word(reading, "data_", 5)) reading->pending = false;
+    if (cif_opens(&reading->tokens, "data_")) cif_take(&reading->tokens);
     reading->blocks++;
     Row *const rows = calloc(2, sizeof *rows); /* of items, of tables */
     if (rows == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a row");

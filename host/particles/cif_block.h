@@ -33,7 +33,6 @@ typedef struct CifBlock {
 /* A file's tokens; begins as zero. */
 typedef struct CifReading {
     CifTokens tokens;
-    bool pending;  /* the token of `tokens` is still to be looked at */
     size_t blocks; /* begun so far */
 } CifReading;
 

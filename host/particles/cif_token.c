@@ -32,7 +32,7 @@ static char *end_of_quoted(char *text, char quote) {
     return NULL;
 }
 
-BpStatus cif_next(CifTokens *tokens, Input *input, BpError *err) {
+static BpStatus read_token(CifTokens *tokens, Input *input, BpError *err) {
     tokens->quoted = false;
     for (;;) {
         if (tokens->cursor == NULL) {
@@ -91,4 +91,24 @@ bool cif_is_unknown(const char *text) {
 
 const char *cif_known(const char *text) {
     return cif_is_unknown(text) ? "" : text;
+}
+
+BpStatus cif_peek(CifTokens *tokens, Input *input, BpError *err) {
+    if (!tokens->pending) BP_TRY(read_token(tokens, input, err));
+    tokens->pending = true;
+    return BP_OK;
+}
+
+bool cif_opens(const CifTokens *tokens, const char *word) {
+    return cif_is_keyword(tokens) && strncasecmp(tokens->token, word, strlen(word)) == 0;
+}
+
+BpStatus cif_skip_save_frame(CifTokens *tokens, Input *input, BpError *err) {
+    const bool opens = tokens->token[strlen("save_")] != '\0';
+    do {
+        cif_take(tokens);
+        BP_TRY(cif_peek(tokens, input, err));
+    } while (opens && tokens->token != NULL && !cif_opens(tokens, "save_"));
+    if (opens) cif_take(tokens);
+    return BP_OK;
 }

@@ -61,7 +61,6 @@ typedef struct Run {
 /* What is kept from frame to frame: the table goes on where the last model ended. */
 typedef struct State {
     CifTokens tokens;
-    bool pending; /* the token of `tokens` is still to be looked at */
     size_t column_count;
     int field_column[FIELD_COUNT]; /* -1: absent */
     Cell cell;
@@ -88,17 +87,6 @@ void cif_state_destroy(void *state) {
 bool cif_has_more(const void *state) {
     const State *const cif = state;
     return cif->held || cif->in_turns;
-}
-
-static BpStatus peek(Input *input, State *state, BpError *err) {
-    if (state->pending) return BP_OK;
-    BP_TRY(cif_next(&state->tokens, input, err));
-    state->pending = true;
-    return BP_OK;
-}
-
-static bool is_word(const State *state, const char *word, size_t length) {
-    return cif_is_keyword(&state->tokens) && strncasecmp(state->tokens.token, word, length) == 0;
 }
 
 /* ---- the cell ----------------------------------------------------------------------------------------- */
@@ -198,7 +186,7 @@ static BpStatus take_loop(Input *input, State *state, BpError *err) {
     size_t count = 0;
     bool atoms = false;
     for (;; count++) {
-        BP_TRY(peek(input, state, err));
+        BP_TRY(cif_peek(&state->tokens, input, err));
         if (!cif_is_name(&state->tokens)) break;
         const char *const name = state->tokens.token;
         if (!atoms && is_of_atoms(name)) {
@@ -208,7 +196,7 @@ static BpStatus take_loop(Input *input, State *state, BpError *err) {
         }
         take_field(state, name, count);
         if (count < COLUMNS_MAX) item[count] = number_of_item(name);
-        state->pending = false;
+        cif_take(&state->tokens);
         if (atoms && count >= COLUMNS_MAX)
             return input_fail(input, true, err, "found a table of more than %d columns, expected fewer",
                               COLUMNS_MAX);
@@ -216,10 +204,10 @@ static BpStatus take_loop(Input *input, State *state, BpError *err) {
     state->column_count = count;
     if (atoms) return check_fields(input, state, &state->in_table, err);
     for (size_t c = 0; c < count && c < COLUMNS_MAX; c++) {
-        BP_TRY(peek(input, state, err));
+        BP_TRY(cif_peek(&state->tokens, input, err));
         if (!cif_is_value(&state->tokens)) break;
         take_number(&state->cell, item[c], state->tokens.token);
-        state->pending = false;
+        cif_take(&state->tokens);
     }
     return BP_OK;
 }
@@ -238,8 +226,8 @@ static BpStatus keep_value(const Input *input, State *state, int field, const ch
 static BpStatus take_item(Input *input, State *state, BpError *err) {
     char name[CIF_TEXT_SIZE];
     snprintf(name, sizeof name, "%s", state->tokens.token);
-    state->pending = false;
-    BP_TRY(peek(input, state, err));
+    cif_take(&state->tokens);
+    BP_TRY(cif_peek(&state->tokens, input, err));
     if (!cif_is_value(&state->tokens)) return BP_OK;
     const char *const value = state->tokens.token;
     take_number(&state->cell, number_of_item(name), value);
@@ -249,26 +237,15 @@ static BpStatus take_item(Input *input, State *state, BpError *err) {
     }
     const int field = take_field(state, name, 0);
     if (field < FIELD_COUNT) BP_TRY(keep_value(input, state, field, value, err));
-    state->pending = false;
-    return BP_OK;
-}
-
-/* A save frame, as dictionaries have them, holds no atoms. */
-static BpStatus skip_save_frame(Input *input, State *state, BpError *err) {
-    const bool opens = state->tokens.token[5] != '\0';
-    do {
-        state->pending = false;
-        BP_TRY(peek(input, state, err));
-    } while (opens && state->tokens.token != NULL && !is_word(state, "save_", 5));
-    if (opens) state->pending = false;
+    cif_take(&state->tokens);
     return BP_OK;
 }
 
 static BpStatus take_next(Input *input, State *state, BpError *err) {
-    if (is_word(state, "save_", 5)) return skip_save_frame(input, state, err);
+    if (cif_opens(&state->tokens, "save_")) return cif_skip_save_frame(&state->tokens, input, err);
     if (cif_is_name(&state->tokens)) return take_item(input, state, err);
-    const bool loop = is_word(state, "loop_", 5);
-    state->pending = false;
+    const bool loop = cif_opens(&state->tokens, "loop_");
+    cif_take(&state->tokens);
     return loop ? take_loop(input, state, err) : BP_OK;
 }
 
@@ -283,14 +260,14 @@ static BpStatus end_block(const Input *input, State *state, BpError *err) {
  * with state->in_table, or the only row is held. Neither: there are no further ones. */
 static BpStatus find_atoms(Input *input, State *state, BpError *err) {
     for (;;) {
-        BP_TRY(peek(input, state, err));
-        const bool ends = state->tokens.token == NULL || is_word(state, "data_", 5);
+        BP_TRY(cif_peek(&state->tokens, input, err));
+        const bool ends = state->tokens.token == NULL || cif_opens(&state->tokens, "data_");
         if (ends) BP_TRY(end_block(input, state, err));
         if (state->held || state->tokens.token == NULL) return BP_OK;
         if (ends) state->cell = (Cell){0};
         BP_TRY(take_next(input, state, err));
         if (!state->in_table) continue;
-        BP_TRY(peek(input, state, err));
+        BP_TRY(cif_peek(&state->tokens, input, err));
         if (cif_is_value(&state->tokens)) return BP_OK;
         if (!state->found)
             return input_fail(input, true, err, "found a table _atom_site without rows, expected atoms");
@@ -302,9 +279,9 @@ static BpStatus find_atoms(Input *input, State *state, BpError *err) {
 static BpStatus skip_table(Input *input, State *state, BpError *err) {
     state->held = false;
     while (state->in_table) {
-        BP_TRY(peek(input, state, err));
+        BP_TRY(cif_peek(&state->tokens, input, err));
         state->in_table = cif_is_value(&state->tokens);
-        if (state->in_table) state->pending = false;
+        if (state->in_table) cif_take(&state->tokens);
     }
     return BP_OK;
 }
@@ -337,7 +314,8 @@ static BpStatus return_to_table(Input *input, State *state, BpError *err) {
  * of the atoms before. */
 static BpStatus find_cell_behind(Input *input, State *state, BpError *err) {
     if (state->cell.has[LENGTHS] && (state->cell.has[FRACT] || state->cell.has[CARTN])) return BP_OK;
-    while (peek(input, state, NULL) == BP_OK && state->tokens.token != NULL && !is_word(state, "data_", 5))
+    while (cif_peek(&state->tokens, input, NULL) == BP_OK && state->tokens.token != NULL &&
+           !cif_opens(&state->tokens, "data_"))
         if (take_next(input, state, NULL) != BP_OK) break;
     return return_to_table(input, state, err);
 }
@@ -347,7 +325,7 @@ static BpStatus find_cell_behind(Input *input, State *state, BpError *err) {
 /* One row into state->row. */
 static BpStatus take_row(Input *input, State *state, BpError *err) {
     for (size_t c = 0; c < state->column_count; c++) {
-        BP_TRY(peek(input, state, err));
+        BP_TRY(cif_peek(&state->tokens, input, err));
         if (state->tokens.token == NULL && !input->open_line)
             input->ended = false; /* a value is missing somewhere above */
         if (!cif_is_value(&state->tokens))
@@ -360,7 +338,7 @@ static BpStatus take_row(Input *input, State *state, BpError *err) {
             if (state->field_column[f] == (int)c)
                 BP_TRY(keep_value(input, state, f, state->tokens.token, err));
         }
-        state->pending = false;
+        cif_take(&state->tokens);
     }
     return BP_OK;
 }
@@ -406,7 +384,7 @@ static BpStatus add_row(BpParticleFile *file, State *state, BpError *err) {
 static BpStatus next_row(Input *input, State *state, bool *more, BpError *err) {
     *more = state->held;
     if (state->held || !state->in_table) return BP_OK;
-    BP_TRY(peek(input, state, err));
+    BP_TRY(cif_peek(&state->tokens, input, err));
     *more = state->in_table = cif_is_value(&state->tokens);
     return *more ? take_row(input, state, err) : BP_OK;
 }
@@ -532,7 +510,7 @@ static BpStatus take_frame(BpParticleFile *file, State *state, BpError *err) {
 static BpStatus find_kind(Input *input, bool *is_crystal, BpError *err) {
     CifTokens tokens = {.lenient = true};
     *is_crystal = false;
-    while (cif_next(&tokens, input, NULL) == BP_OK && tokens.token != NULL) {
+    for (; cif_peek(&tokens, input, NULL) == BP_OK && tokens.token != NULL; cif_take(&tokens)) {
         if (!cif_is_name(&tokens)) {
             if (*is_crystal) break;
             continue;
