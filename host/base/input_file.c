@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -28,6 +29,13 @@ static BpStatus fail_kind(const char *path, mode_t mode, const char *expected, B
     const BpStatus status = bp_fail(err, BP_ERR_SCENE, "found %s, expected %s", kind_text(mode), expected);
     bp_error_at(err, path, 0, 0);
     return status;
+}
+
+bool bp_path_has_ending(const char *path, const char *ending) {
+    size_t length = strlen(path);
+    const size_t size = strlen(ending);
+    if (length > 3 && strcasecmp(path + length - 3, ".gz") == 0) length -= 3;
+    return length > size && strncasecmp(path + length - size, ending, size) == 0;
 }
 
 char *bp_path_beside(const char *document, const char *file) {

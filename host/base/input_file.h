@@ -14,6 +14,8 @@
 
 /* Resolves the path `file` relative to the folder of `document`; the caller frees it. NULL: out of memory. */
 char *bp_path_beside(const char *document, const char *file);
+/* Whether a path ends so (".ply"), in any case, also with .gz behind it, and has a name before that. */
+bool bp_path_has_ending(const char *path, const char *ending);
 
 /* Larger scene documents are refused: parsing takes twenty times as much memory, and so many spheres belong
  * in a PLY file. The limit also ends reading from an endless stream. */

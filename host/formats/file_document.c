@@ -1,6 +1,7 @@
 /* file_document.c: see file_document.h. */
 #include "file_document.h"
 
+#include "base/input_file.h"
 #include "base/json_memory.h"
 #include "mesh_triangles.h"
 
@@ -9,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 static const char *base_name(const char *path) {
     const char *const slash = strrchr(path, '/');
@@ -55,13 +55,6 @@ BpStatus bp_particle_document(const char *path, char **text, BpError *err) {
 /* ---- meshes ---- */
 
 static const double clay[3] = {0.6, 0.58, 0.55};
-
-static bool is_called(const char *path, const char *ending) {
-    size_t length = strlen(path);
-    const size_t size = strlen(ending);
-    if (length > 3 && strcasecmp(path + length - 3, ".gz") == 0) length -= 3;
-    return length > size && strncasecmp(path + length - size, ending, size) == 0;
-}
 
 static json_t *matte(const double kd[3], const double ke[3]) {
     json_t *const material = json_pack("{ss, s[fff]}", "type", "lambertian", "albedo", fmin(kd[0], 1),
@@ -137,7 +130,7 @@ static BpStatus add_offers(const char *path, json_t *materials, json_t *entry, b
     if (status == BP_OK && with_one > 0 && json_object_set(entry, "materials", names) != 0)
         status = BP_ERR_SCENE;
     /* In glTF, flat faces are those without normals. */
-    if (status == BP_OK && mesh.face_normals != NULL && !is_called(path, ".obj"))
+    if (status == BP_OK && mesh.face_normals != NULL && !bp_path_has_ending(path, ".obj"))
         json_object_set_new(entry, "smooth", json_true());
     json_decref(names);
     free(numbers);
@@ -162,13 +155,15 @@ BpStatus bp_mesh_document(const char *path, char **text, char note[BP_DOCUMENT_N
     BpStatus status = BP_OK;
     note[0] = '\0';
     *text = NULL;
-    if (whole && (is_called(path, ".obj") || is_called(path, ".gltf") || is_called(path, ".glb"))) {
+    if (whole && (bp_path_has_ending(path, ".obj") || bp_path_has_ending(path, ".gltf") ||
+                  bp_path_has_ending(path, ".glb"))) {
         status = add_offers(path, materials, entry, &all_have_one, note, err);
         whole = status == BP_OK;
         if (status != BP_OK && err != NULL && err->message[0] != '\0') goto done;
     }
     if (whole && !all_have_one) add_clay(materials, entry);
-    if (whole && is_called(path, ".stl")) json_object_set_new(entry, "rotate", json_pack("[iii]", -90, 0, 0));
+    if (whole && bp_path_has_ending(path, ".stl"))
+        json_object_set_new(entry, "rotate", json_pack("[iii]", -90, 0, 0));
     whole = whole && json_object_set(document, "materials", materials) == 0 &&
             json_object_set_new(document, "meshes", json_pack("[O]", entry)) == 0 &&
             json_object_set_new(document, "shadow_catcher", json_true()) == 0;

@@ -50,13 +50,6 @@ static const struct {
                {"X3D", ".x3d", NULL}};
 enum { FOREIGN_COUNT = sizeof foreign / sizeof *foreign };
 
-static bool has_ending(const char *path, const char *ending) {
-    size_t length = strlen(path);
-    const size_t size = strlen(ending);
-    if (length > 3 && strcasecmp(path + length - 3, ".gz") == 0) length -= 3;
-    return length > size && strncasecmp(path + length - size, ending, size) == 0;
-}
-
 static bool begins_with(const Input *input, const char *text) {
     const size_t length = strlen(text);
     return input->end - input->begin >= length && memcmp(input->buffer + input->begin, text, length) == 0;
@@ -96,19 +89,19 @@ static Format find_format(Input *input, const char *path, const char **other) {
     (void)input_fill(input, 512);
     for (int i = 0; i < FOREIGN_COUNT; i++) {
         *other = foreign[i].name;
-        if (has_ending(path, foreign[i].ending)) return FORMAT_FOREIGN;
+        if (bp_path_has_ending(path, foreign[i].ending)) return FORMAT_FOREIGN;
         if (foreign[i].beginning != NULL && begins_with(input, foreign[i].beginning)) return FORMAT_FOREIGN;
     }
-    if (has_ending(path, ".gltf") || has_ending(path, ".glb") || begins_with(input, "glTF"))
+    if (bp_path_has_ending(path, ".gltf") || bp_path_has_ending(path, ".glb") || begins_with(input, "glTF"))
         return FORMAT_GLTF;
     first_word(input, word, sizeof word);
     if (word[0] == '{') return FORMAT_NONE; /* a scene document, whatever its name */
     if (strcmp(word, "ply") == 0) return FORMAT_PLY;
     if (is_off_word(word)) return FORMAT_OFF;
-    if (has_ending(path, ".ply")) return FORMAT_PLY;
-    if (has_ending(path, ".obj")) return FORMAT_OBJ;
-    if (has_ending(path, ".off")) return FORMAT_OFF;
-    if (has_ending(path, ".stl") || is_stl_text(input, word)) return FORMAT_STL;
+    if (bp_path_has_ending(path, ".ply")) return FORMAT_PLY;
+    if (bp_path_has_ending(path, ".obj")) return FORMAT_OBJ;
+    if (bp_path_has_ending(path, ".off")) return FORMAT_OFF;
+    if (bp_path_has_ending(path, ".stl") || is_stl_text(input, word)) return FORMAT_STL;
     return !input_is_packed(input) && mesh_stl_is_binary(input) ? FORMAT_STL : FORMAT_NONE;
 }
 

@@ -5,6 +5,7 @@
 #include "base/input_file.h"
 #include "base/json_memory.h"
 #include "base/message_text.h"
+#include "reader.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -23,7 +24,7 @@ BpStatus gltf_fail(const GltfData *data, const char *place, BpError *err, const 
     return input_fail(data->input, false, err, "%s%s%s", place, place[0] != '\0' ? ": " : "", text);
 }
 
-static BpStatus fail_memory(BpError *err) {
+BpStatus gltf_fail_memory(BpError *err) {
     return bp_fail(err, BP_ERR_MEMORY, "out of memory for a glTF file");
 }
 
@@ -96,7 +97,7 @@ static BpStatus read_whole(GltfData *data, size_t *length, BpError *err) {
         if (*length + more > capacity) {
             capacity = *length + more + *length / 2;
             unsigned char *const grown = realloc(data->file, capacity);
-            if (grown == NULL) return fail_memory(err);
+            if (grown == NULL) return gltf_fail_memory(err);
             data->file = grown;
         }
         memcpy(data->file + *length, input->buffer + input->begin, more);
@@ -106,26 +107,21 @@ static BpStatus read_whole(GltfData *data, size_t *length, BpError *err) {
     return input->failed ? gltf_fail(data, "", err, "it cannot be read") : BP_OK;
 }
 
-static size_t word_at(const unsigned char *bytes) {
-    return (size_t)bytes[0] | (size_t)bytes[1] << 8 | (size_t)bytes[2] << 16 | (size_t)bytes[3] << 24;
-}
-
 /* Finds the document, and the chunk of numbers, in a binary file. */
 static BpStatus part_chunks(GltfData *data, size_t length, const unsigned char **text, size_t *text_length,
                             BpError *err) {
     const unsigned char *const file = data->file;
     if (length < 12) return gltf_fail(data, "", err, "found the end of the file within the header");
-    if (word_at(file + 4) != 2)
-        return gltf_fail(data, "", err, "found glTF of version %zu, expected 2: export it anew",
-                         word_at(file + 4));
-    if (word_at(file + 8) > length)
+    const size_t version = mesh_word_at(file + 4), end = mesh_word_at(file + 8);
+    if (version != 2)
+        return gltf_fail(data, "", err, "found glTF of version %zu, expected 2: export it anew", version);
+    if (end > length)
         return gltf_fail(data, "", err,
                          "found %zu bytes, expected the %zu that the header counts: the file is cut off",
-                         length, word_at(file + 8));
-    const size_t end = word_at(file + 8);
+                         length, end);
     *text = NULL;
     for (size_t at = 12; at + 8 <= end;) {
-        const size_t size = word_at(file + at), kind = word_at(file + at + 4);
+        const size_t size = mesh_word_at(file + at), kind = mesh_word_at(file + at + 4);
         if (size > end - at - 8)
             return gltf_fail(data, "", err, "found a chunk of %zu bytes with %zu left, expected fewer", size,
                              end - at - 8);
@@ -145,7 +141,7 @@ static BpStatus parse_document(GltfData *data, const unsigned char *text, size_t
     json_error_t error;
     bool no_memory = false;
     data->root = bp_json_load(length > 0 ? (const char *)text : "", length, 0, &error, &no_memory);
-    if (no_memory) return fail_memory(err);
+    if (no_memory) return gltf_fail_memory(err);
     if (data->root == NULL) {
         char found[sizeof error.text];
         bp_printable(error.text, found, sizeof found);
@@ -206,11 +202,11 @@ static void unescape(char *uri) {
 
 static BpStatus read_beside(GltfData *data, GltfBuffer *buffer, const char *uri, BpError *err) {
     char *const name = strdup(uri);
-    if (name == NULL) return fail_memory(err);
+    if (name == NULL) return gltf_fail_memory(err);
     unescape(name);
     char *const path = bp_path_beside(data->path, name);
     free(name);
-    if (path == NULL) return fail_memory(err);
+    if (path == NULL) return gltf_fail_memory(err);
     char *bytes = NULL;
     const BpStatus status =
         bp_file_read(path, "a file of numbers that a glTF file names", &bytes, &buffer->length, err);
@@ -236,7 +232,7 @@ static BpStatus read_buffer(GltfData *data, size_t number, BpError *err) {
         if (comma == NULL || comma - uri < 7 || strncmp(comma - 7, ";base64", 7) != 0)
             return gltf_fail(data, place, err, "found data in the document that is not in base64");
         buffer->bytes = buffer->own = malloc(strlen(comma) + 1);
-        if (buffer->own == NULL) return fail_memory(err);
+        if (buffer->own == NULL) return gltf_fail_memory(err);
         if (!decode(comma + 1, buffer->own, &buffer->length))
             return gltf_fail(data, place, err, "found a character that base64 does not have");
     } else if (strstr(uri, "://") != NULL) {
@@ -266,7 +262,7 @@ BpStatus gltf_read(GltfData *data, Input *input, const char *path, BpError *err)
     BP_TRY(parse_document(data, text, text_length, err));
     const size_t count = json_array_size(json_object_get(data->root, "buffers"));
     data->buffers = calloc(count + 1, sizeof *data->buffers);
-    if (data->buffers == NULL) return fail_memory(err);
+    if (data->buffers == NULL) return gltf_fail_memory(err);
     data->buffer_count = count;
     for (size_t i = 0; i < count; i++) BP_TRY(read_buffer(data, i, err));
     return BP_OK;
@@ -294,8 +290,6 @@ static size_t size_of(size_t type) {
 /* Section 3.6.2.2: whole numbers may stand for shares from 0, or from -1, to 1. */
 static double number_at(const unsigned char *bytes, size_t type, bool normalized) {
     const unsigned word = (unsigned)bytes[0] | (size_of(type) > 1 ? (unsigned)bytes[1] << 8 : 0);
-    float real;
-    uint32_t bits;
     switch ((Component)type) {
     case BYTE:
         return normalized ? fmax((double)(int8_t)word / 127, -1) : (double)(int8_t)word;
@@ -306,11 +300,9 @@ static double number_at(const unsigned char *bytes, size_t type, bool normalized
     case USHORT:
         return normalized ? word / 65535.0 : word;
     case UINT:
-        return (double)word_at(bytes) / (normalized ? 4294967295.0 : 1);
+        return (double)mesh_word_at(bytes) / (normalized ? 4294967295.0 : 1);
     case FLOAT:
-        bits = (uint32_t)word_at(bytes);
-        memcpy(&real, &bits, sizeof real);
-        return (double)real;
+        return mesh_float_at(bytes);
     }
     return 0;
 }
@@ -390,7 +382,7 @@ static BpStatus replace_rows(const GltfData *data, const char *place, const json
         return gltf_fail(data, place, err, "found sparse rows that do not fit their view");
     double *const which = malloc((count + 1) * sizeof *which);
     double *const what = malloc((count * rows->components + 1) * sizeof *what);
-    BpStatus status = which != NULL && what != NULL ? BP_OK : fail_memory(err);
+    BpStatus status = which != NULL && what != NULL ? BP_OK : gltf_fail_memory(err);
     if (status == BP_OK) status = read_rows(data, place, view, index_type, false, count, 1, which, err);
     if (status == BP_OK) status = needed_whole(data, values, "bufferView", place, &number, err);
     if (status == BP_OK) status = whole_or(data, values, "byteOffset", place, 0, &offset, err);
@@ -441,7 +433,7 @@ BpStatus gltf_rows(const GltfData *data, size_t number, size_t components, size_
                          rows->count);
     rows->whole_numbers = type != FLOAT && !normalized;
     rows->values = calloc(rows->count * rows->components + 1, sizeof *rows->values);
-    if (rows->values == NULL) return fail_memory(err);
+    if (rows->values == NULL) return gltf_fail_memory(err);
     BpStatus status = has_view ? read_rows(data, place, view, type, normalized, rows->count, rows->components,
                                            rows->values, err)
                                : BP_OK;

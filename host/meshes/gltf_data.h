@@ -39,6 +39,8 @@ void gltf_clear(GltfData *data);
 BpStatus gltf_fail(const GltfData *data, const char *place, BpError *err, const char *format, ...)
     BP_PRINTF_LIKE(4, 5);
 
+BpStatus gltf_fail_memory(BpError *err);
+
 /* Element `number` of a list at the top of the document, an object. */
 BpStatus gltf_element(const GltfData *data, const char *list, size_t number, json_t **element, BpError *err);
 /* A member that is a whole number from 0; *found: it is there. */

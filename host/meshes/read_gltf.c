@@ -42,10 +42,6 @@ typedef struct Gltf {
     size_t last_node, first_vertex, vertex_count;
 } Gltf;
 
-static BpStatus fail_memory(BpError *err) {
-    return bp_fail(err, BP_ERR_MEMORY, "out of memory for a glTF file");
-}
-
 static size_t length_of(const Gltf *g, const char *list) {
     return json_array_size(json_object_get(g->data.root, list));
 }
@@ -98,13 +94,12 @@ static BpStatus local_matrix(const Gltf *g, const json_t *node, const char *plac
     return BP_OK;
 }
 
-/* Enters a node below a parent, and notes it and its children to be visited: the last of `stack` first. */
-static BpStatus enter_node(Gltf *g, size_t number, const Matrix *parent, BpError *err) {
-    json_t *element = NULL;
+/* Enters a node of the document below a parent: from then on it stands somewhere, and comes next. */
+static BpStatus enter_node(Gltf *g, size_t number, const json_t *element, const Matrix *parent,
+                           BpError *err) {
     char place[PLACE_SIZE];
     Matrix local;
     snprintf(place, sizeof place, "nodes[%zu]", number);
-    BP_TRY(gltf_element(&g->data, "nodes", number, &element, err));
     if (g->nodes[number].in_scene)
         return gltf_fail(&g->data, place, err, "found it below two nodes, expected one parent");
     if (extension_of(element, "EXT_mesh_gpu_instancing") != NULL)
@@ -145,9 +140,9 @@ static BpStatus visit_nodes(Gltf *g, const json_t *roots, Visit *stack, BpError 
     while (used > 0) {
         const Visit visit = stack[--used];
         json_t *element = NULL;
-        BP_TRY(enter_node(g, visit.node,
-                          visit.parent != SIZE_MAX ? &g->nodes[visit.parent].global : &identity, err));
+        const Matrix *const parent = visit.parent != SIZE_MAX ? &g->nodes[visit.parent].global : &identity;
         BP_TRY(gltf_element(&g->data, "nodes", visit.node, &element, err));
+        BP_TRY(enter_node(g, visit.node, element, parent, err));
         BP_TRY(push_nodes(g, json_object_get(element, "children"), visit.node, stack, &used, err));
     }
     return BP_OK;
@@ -189,7 +184,7 @@ static BpStatus find_nodes(Gltf *g, BpError *err) {
     Visit *const stack = calloc(g->node_count + 1, sizeof *stack);
     const BpStatus status = g->nodes != NULL && g->order != NULL && stack != NULL
                                 ? visit_nodes(g, roots, stack, err)
-                                : fail_memory(err);
+                                : gltf_fail_memory(err);
     free(stack);
     json_decref(roots);
     return status;
@@ -268,7 +263,7 @@ static BpStatus read_materials(Gltf *g, BpError *err) {
     g->material_count = length_of(g, "materials");
     g->materials = calloc(g->material_count + 1, sizeof *g->materials);
     g->base_colors = calloc(g->material_count + 1, sizeof *g->base_colors);
-    if (g->materials == NULL || g->base_colors == NULL) return fail_memory(err);
+    if (g->materials == NULL || g->base_colors == NULL) return gltf_fail_memory(err);
     for (size_t m = 0; m < g->material_count; m++) BP_TRY(read_material(g, m, err));
     note_textures(g);
     return BP_OK;
@@ -335,7 +330,7 @@ static BpStatus read_skin(const Gltf *g, size_t number, Skin *skin, BpError *err
     if (found) BP_TRY(gltf_rows(&g->data, inverse, 16, 16, &rows, err));
     skin->count = json_array_size(joints);
     skin->joints = calloc(skin->count + 1, sizeof *skin->joints);
-    BpStatus status = skin->joints != NULL ? BP_OK : fail_memory(err);
+    BpStatus status = skin->joints != NULL ? BP_OK : gltf_fail_memory(err);
     for (size_t j = 0; j < skin->count && status == BP_OK; j++) {
         const json_t *const joint = json_array_get(joints, j);
         const json_int_t node = json_integer_value(joint);

@@ -27,17 +27,6 @@ typedef struct Stl {
     char *cursor; /* in the line of text that is being read */
 } Stl;
 
-static uint32_t whole_at(const unsigned char *bytes) {
-    return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
-}
-
-static double float_at(const unsigned char *bytes) {
-    const uint32_t bits = whole_at(bytes);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return (double)value;
-}
-
 /* The file's length when unpacked. */
 static uint64_t length_of(Input *input) {
     struct stat state;
@@ -50,7 +39,7 @@ static uint64_t length_of(Input *input) {
 static bool has_binary_length(Input *input, uint64_t *length, uint64_t *wanted) {
     *wanted = BEGINNING;
     if (input_fill(input, BEGINNING))
-        *wanted += TRIANGLE * (uint64_t)whole_at(input->buffer + input->begin + HEADER);
+        *wanted += TRIANGLE * (uint64_t)mesh_word_at(input->buffer + input->begin + HEADER);
     *length = length_of(input);
     return *length == *wanted && !input->failed;
 }
@@ -80,7 +69,7 @@ static BpStatus read_binary(Stl *stl, BpError *err) {
     uint64_t attributes = 0;
     char number[32];
     (void)input_fill(input, BEGINNING);
-    const uint32_t count = whole_at(input->buffer + input->begin + HEADER);
+    const uint32_t count = mesh_word_at(input->buffer + input->begin + HEADER);
     input_take(input, BEGINNING);
     for (uint32_t n = 0; n < count; n++) {
         if (!input_fill(input, TRIANGLE))
@@ -90,8 +79,9 @@ static BpStatus read_binary(Stl *stl, BpError *err) {
         const unsigned char *const bytes = input->buffer + input->begin;
         for (size_t corner = 0; corner < 3; corner++) {
             const unsigned char *const at = bytes + 12 + 12 * corner;
-            BP_TRY(add_corner(stl, (const double[3]){float_at(at), float_at(at + 4), float_at(at + 8)}, false,
-                              err));
+            BP_TRY(add_corner(
+                stl, (const double[3]){mesh_float_at(at), mesh_float_at(at + 4), mesh_float_at(at + 8)},
+                false, err));
         }
         attributes += bytes[48] != 0 || bytes[49] != 0;
         input_take(input, TRIANGLE);

@@ -3,13 +3,13 @@
 #include "reader.h"
 
 #include "base/encoding.h"
+#include "base/input_file.h"
 #include "base/plural.h"
 
 #include <inttypes.h>
 #include <locale.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -74,13 +74,8 @@ static BpParticleFormat format_of_name(const char *name) {
                       {"POSCAR", BP_PARTICLES_POSCAR},
                       {"CONTCAR", BP_PARTICLES_POSCAR},
                       {"XDATCAR", BP_PARTICLES_POSCAR}};
-    size_t length = strlen(name);
-    if (length > 3 && strcasecmp(name + length - 3, ".gz") == 0) length -= 3;
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
-        const size_t size = strlen(endings[i].ending);
-        if (length > size && strncasecmp(name + length - size, endings[i].ending, size) == 0)
-            return endings[i].format;
-    }
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+        if (bp_path_has_ending(name, endings[i].ending)) return endings[i].format;
     const char *const slash = strrchr(name, '/');
     const char *const base = slash != NULL ? slash + 1 : name;
     for (size_t i = 0; i < sizeof beginnings / sizeof *beginnings; i++)
