@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import _library as lib
 from ._arguments import Array, c_text, floats, read
 from ._colors import Color, linear_colors
-from ._mesh import rows
+from ._mesh import expect_vertices, rows, vertex_places
 
 
 @dataclasses.dataclass
@@ -57,16 +57,9 @@ class Lines:
                                  "vertices, as in lines.astype(int)")
         return pairs
 
-    def _vertices(self) -> Array:
-        places = floats(typing.cast(npt.ArrayLike, self.vertices), "vertices")
-        if places.ndim != 2 or places.shape[1] != 3:
-            hint = "; transpose it, as in vertices.T" if places.ndim == 2 and places.shape[0] == 3 else ""
-            raise lib.SceneError(f"vertices: found an array of shape {places.shape}, expected (V, 3){hint}")
-        return places
-
-    def _ends(self, pairs: typing.Optional[Array]) -> Array:
-        """(N, 2, 3), all of them finite."""
-        if pairs is None:
+    def _ends(self, pairs: typing.Optional[Array], places: typing.Optional[Array]) -> Array:
+        """(N, 2, 3), all of them finite. `places`: the vertices that the pairs count."""
+        if pairs is None or places is None:
             ends = floats(self.lines, "lines")
             if ends.shape == (0,):
                 return np.empty((0, 2, 3))
@@ -77,12 +70,7 @@ class Lines:
                         ends.shape[1] == 2 else "")
                 raise lib.SceneError(f"lines: found an array of shape {ends.shape}, expected (N, 2, 3){hint}")
         else:
-            places = self._vertices()
-            bad = np.flatnonzero(((pairs < 0) | (pairs >= len(places))).any(axis=1))
-            if len(bad) > 0:
-                wrong = next(int(vertex) for vertex in pairs[bad[0]] if not 0 <= vertex < len(places))
-                expected = f"numbers from 0 to {len(places) - 1}" if len(places) > 0 else "none, since there are no vertices"
-                raise lib.SceneError(f"lines: found vertex {wrong} in line {bad[0]} (from 0), expected {expected}")
+            expect_vertices(pairs, len(places), "line")
             ends = places[pairs.astype(np.intp)]
         self._expect_all("lines" if pairs is None else "vertices", ~np.isfinite(ends).all(axis=(1, 2)), "finite number in an end of")
         return ends
@@ -100,13 +88,12 @@ class Lines:
         self._expect_all("radius", np.atleast_1d(np.isnan(radii)), "number for")
         return radii
 
-    def _colors(self, count: int, pairs: typing.Optional[Array]) -> typing.Optional[Array]:
-        """One for all (3,), of lines (N, 3) or of their ends (N, 2, 3)."""
+    def _colors(self, count: int, pairs: typing.Optional[Array], points: int) -> typing.Optional[Array]:
+        """Of `points` vertices, or of -1 without pairs: one for all (3,), of lines (N, 3) or of their ends (N, 2, 3)."""
         if self.colors is None or isinstance(self.colors, str):
             return linear_colors(self.colors, count, None, self.cmap, self.color_range, "colors")
         array, mask = read(self.colors, "colors", 'numbers; a text such as "#4477aa" gives all lines one colour')
         colors: typing.Any = array if mask is None else np.ma.array(array, mask=mask)  # type: ignore[no-untyped-call]
-        points = -1 if pairs is None else len(self._vertices())
         one_for_all = array.shape == (3,) and not self.cmap and self.color_range is None
         of_ends = array.shape in ((count, 2), (count, 2, 3))
         of_points = array.shape in ((points,), (points, 3)) and points != count and not one_for_all
@@ -127,9 +114,11 @@ class Lines:
     def _set(self, material: typing.Optional[str], keep: typing.List[typing.Any]) -> lib.BpLineSet:
         """For the library; `keep` gets what must live until it has read the arrays."""
         pairs = self._pairs()
-        ends = self._ends(pairs)
+        places = None if pairs is None else vertex_places(typing.cast(npt.ArrayLike, self.vertices), "V")
+        ends = self._ends(pairs, places)
         count = len(ends)
-        points, radii, colors = ends.reshape(-1, 3), self._radii(count), self._colors(count, pairs)
+        points, radii = ends.reshape(-1, 3), self._radii(count)
+        colors = self._colors(count, pairs, -1 if places is None else len(places))
         halves = [colors, colors] if colors is None or colors.ndim < 3 else [colors[:, 0], colors[:, 1]]
         keep += [points, radii, colors]
         return lib.BpLineSet(2 * count, count, rows(points, True), None, rows(radii, radii.ndim == 1),

@@ -30,6 +30,24 @@ def rows(array: typing.Optional[npt.NDArray[typing.Any]], per_row: bool) -> lib.
     return lib.BpRows(c.c_void_p(array.ctypes.data), row, column, kind)
 
 
+def vertex_places(vertices: npt.ArrayLike, letter: str) -> Array:
+    """Points as an array of three columns; `letter` is how messages call their number."""
+    places = floats(vertices, "vertices")
+    if places.ndim != 2 or places.shape[1] != 3:
+        hint = "; transpose it, as in vertices.T" if places.ndim == 2 and places.shape[0] == 3 else ""
+        raise lib.SceneError(f"vertices: found an array of shape {places.shape}, expected ({letter}, 3){hint}")
+    return places
+
+
+def expect_vertices(numbers: Array, count: int, noun: str) -> None:
+    """Refuses rows, of "face" or "line", that name a vertex that is not among `count`."""
+    bad = np.flatnonzero(((numbers < 0) | (numbers >= count)).any(axis=1))
+    if len(bad) > 0:
+        wrong = next(int(vertex) for vertex in numbers[bad[0]] if not 0 <= vertex < count)
+        expected = f"numbers from 0 to {count - 1}" if count > 0 else "none, since there are no vertices"
+        raise lib.SceneError(f"{noun}s: found vertex {wrong} in {noun} {bad[0]} (from 0), expected {expected}")
+
+
 @dataclasses.dataclass
 class Mesh:
     """Triangles or quads of one material, as arrays.
@@ -71,10 +89,7 @@ class Mesh:
         return normals
 
     def _places(self) -> Array:
-        places = floats(self.vertices, "vertices")
-        if places.ndim != 2 or places.shape[1] != 3:
-            hint = "; transpose it, as in vertices.T" if places.ndim == 2 and places.shape[0] == 3 else ""
-            raise lib.SceneError(f"vertices: found an array of shape {places.shape}, expected (N, 3){hint}")
+        places = vertex_places(self.vertices, "N")
         bad = np.flatnonzero(~np.isfinite(places).all(axis=1))
         if len(bad) > 0:
             more = f", nor in {len(bad) - 1:,} more" if len(bad) > 1 else ""
@@ -90,10 +105,7 @@ class Mesh:
         if corners.dtype.kind not in "iu" or mask is not None:
             raise lib.SceneError(f"faces: found {'masked numbers' if mask is not None else corners.dtype}, expected whole numbers, as "
                                  "in faces.astype(int)")
-        bad = np.flatnonzero(((corners < 0) | (corners >= count)).any(axis=1))
-        if len(bad) > 0:
-            wrong = next(int(vertex) for vertex in corners[bad[0]] if not 0 <= vertex < count)
-            raise lib.SceneError(f"faces: found vertex {wrong} in face {bad[0]} (from 0), expected numbers from 0 to {count - 1}")
+        expect_vertices(corners, count, "face")
         return corners
 
     def _colors(self, corners: Array, count: int) -> typing.Optional[Array]:
