@@ -36,7 +36,8 @@ static BpStatus move_files(BpScene *scene, const char *from, const char *to, BpE
         BP_TRY(bp_shape_file_move(from, to, &scene->point_files[i], err));
     }
     for (size_t i = 0; i < scene->mesh_file_count; i++)
-        BP_TRY(bp_shape_file_move(from, to, &scene->mesh_files[i], err));
+        if (scene->mesh_files[i].entry != NULL)
+            BP_TRY(bp_shape_file_move(from, to, &scene->mesh_files[i], err));
     return BP_OK;
 }
 

@@ -109,7 +109,10 @@ static BpStatus add_set(const BpLineSet *set, const BpMaterialIndex *index, BpSc
 /* As of spheres that a caller hands over: lines in one plane are seen from the front, unless something else
  * that the camera is fitted to stands before it or behind. */
 static bool is_flat(const BpScene *scene, size_t first) {
-    const bool beside = scene->sphere_count > scene->particle_first || first > scene->listed_capsules;
+    size_t triangle = 0, end = 0;
+    bp_scene_particle_triangles(scene, &triangle, &end);
+    const bool beside =
+        scene->sphere_count > scene->particle_first || first > scene->listed_capsules || end > triangle;
     if (first == scene->capsule_count) return scene->flat;
     if (beside && !scene->flat) return false;
     const double level = scene->sphere_count > scene->particle_first

@@ -270,6 +270,7 @@ BpStatus bp_parse_particle_style(const BpNode *node, const char *narrow, BpParti
     const BpNode color = bp_node_member(node, "color"), bonds = bp_node_member(node, "bonds");
     const BpNode box = bp_node_member(node, "box"), solvent = bp_node_member(node, "solvent");
     const BpNode whole = bp_node_member(node, "whole"), select = bp_node_member(node, "select");
+    const BpNode shapes = bp_node_member(node, "shapes");
     int choice = 0;
     bp_particle_style_defaults(style);
     BP_TRY(read_expression(&select, BP_VALUE_TRUTH, narrow, &style->select, err));
@@ -284,5 +285,6 @@ BpStatus bp_parse_particle_style(const BpNode *node, const char *narrow, BpParti
     BP_TRY(read_bonds(&bonds, style, err));
     BP_TRY(bp_node_boolean(&box, &style->box, err));
     BP_TRY(bp_node_boolean(&solvent, &style->solvent, err));
-    return bp_node_boolean(&whole, &style->whole, err);
+    BP_TRY(bp_node_boolean(&whole, &style->whole, err));
+    return bp_node_boolean(&shapes, &style->shapes, err);
 }

@@ -12,12 +12,31 @@ static BpStatus fail_member(const BpNode *object, const char *member, const char
     return bp_node_fail(object, BP_PART_VALUE, err, "%s: %s", member, text);
 }
 
+/* A triangle of particles of a file, the number of which is among those of points. */
+static BpStatus refuse_particle(const BpNode *root, const BpScene *scene, const BpShapeFile *file,
+                                const BpFault *fault, BpError *err) {
+    char name[BP_SPHERE_NAME_SIZE];
+    const BpNode particles = bp_node_member(root, "particles");
+    size_t place = 0;
+    while (place + 1 < json_array_size(particles.value)) {
+        const BpNode entry = bp_node_element(&particles, place), named = bp_node_member(&entry, "file");
+        if (strcmp(json_string_value(named.value), file->file) == 0) break;
+        place++;
+    }
+    const BpNode entry = bp_node_element(&particles, place), member = bp_node_member(&entry, fault->member);
+    return bp_node_fail(member.value != NULL ? &member : &entry, BP_PART_VALUE, err,
+                        "%s: %s; or \"shapes\": false, which draws these particles as spheres",
+                        bp_triangle_name(scene, fault->index, name), fault->text);
+}
+
 /* A triangle of a mesh, which comes from a file or stands in no document. */
 static BpStatus refuse_mesh(const BpNode *root, const BpScene *scene, const BpFault *fault, BpError *err) {
     char name[BP_SPHERE_NAME_SIZE];
     size_t mesh = 0;
     while (mesh + 1 < scene->mesh_file_count && scene->mesh_files[mesh + 1].first <= fault->index) mesh++;
     if (scene->mesh_files[mesh].in_memory) return bp_scene_validate(scene, err);
+    if (scene->mesh_files[mesh].of_particles)
+        return refuse_particle(root, scene, &scene->mesh_files[mesh], fault, err);
     const BpNode meshes = bp_node_member(root, "meshes"), entry = bp_node_element(&meshes, mesh),
                  member = bp_node_member(&entry, fault->member);
     return bp_node_fail(member.value != NULL ? &member : &entry, BP_PART_VALUE, err, "%s: %s",

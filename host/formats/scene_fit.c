@@ -26,8 +26,10 @@ void bp_scene_view(BpScene *scene, double direction[3]) {
  */
 static BpStatus copy_balls(const BpScene *scene, bool all, size_t first, BpSphere **made, size_t *count,
                            BpError *err) {
+    size_t from = 0, to = scene->triangle_count;
+    if (!all) bp_scene_particle_triangles(scene, &from, &to);
     const size_t moving = first < scene->moving_count ? scene->moving_count : first,
-                 vertices = all ? 3 * scene->triangle_count : 0, bonds = all ? 0 : scene->listed_capsules;
+                 vertices = 3 * (to - from), bonds = all ? 0 : scene->listed_capsules;
     *count = scene->sphere_count - first + moving - first + vertices + 2 * (scene->capsule_count - bonds);
     BpSphere *next = *made = malloc((*count + 1) * sizeof **made);
     if (next == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu spheres", *count);
@@ -38,7 +40,7 @@ static BpStatus copy_balls(const BpScene *scene, bool all, size_t first, BpSpher
     }
     for (size_t i = 0; i < vertices; i++, next++) {
         *next = (BpSphere){.radius = 0};
-        memcpy(next->center, scene->triangles[i / 3].vertices[i % 3], sizeof next->center);
+        memcpy(next->center, scene->triangles[from + i / 3].vertices[i % 3], sizeof next->center);
     }
     for (size_t i = 2 * bonds; i < 2 * scene->capsule_count; i++, next++) {
         *next = (BpSphere){.radius = scene->capsules[i / 2].radius};
@@ -54,8 +56,7 @@ BpStatus bp_scene_fitted(const BpScene *scene, const BpSphere **balls, size_t *c
     *made = NULL;
     *balls = scene->spheres + first;
     *count = scene->sphere_count - first;
-    if (first >= scene->moving_count && scene->capsule_count == 0 && !(all && scene->triangle_count > 0))
-        return BP_OK;
+    if (first >= scene->moving_count && scene->capsule_count == 0 && scene->triangle_count == 0) return BP_OK;
     BP_TRY(copy_balls(scene, all, first, made, count, err));
     *balls = *made;
     return BP_OK;

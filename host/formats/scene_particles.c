@@ -6,6 +6,7 @@
 #include "named_file.h"
 #include "particle_cache.h"
 #include "particle_members.h"
+#include "particle_shapes.h"
 #include "particles/add_to_scene.h"
 
 #include <math.h>
@@ -49,17 +50,26 @@ static void note_film(BpFilmSelections *film, size_t place, bool found) {
 static BpStatus add_particles(BpParticleFile *file, const char *path, const Entry *entry, size_t place,
                               BpFilmSelections *film, BpScene *scene, BpError *err) {
     BpParticles particles = {0};
-    const size_t first = scene->sphere_count;
+    const size_t first = bp_scene_shapes(scene), first_triangle = scene->triangle_count;
     char summary[1024];
     double range[2];
     BpStatus status = bp_particle_file_frame(file, entry->frame, &particles, err);
+    if (status == BP_OK) {
+        status = bp_cut_particle_shapes(&particles, err);
+        if (status == BP_ERR_SCENE) bp_error_at(err, path, 0, 0);
+    }
     if (status == BP_OK) {
         status = bp_particles_add_to_scene(&particles, &entry->style, may_miss(film, place), entry->material,
                                            scene, summary, sizeof summary, range, err);
         if (status == BP_ERR_SCENE) bp_error_at(err, path, 0, 0);
     }
-    if (status == BP_OK) note_film(film, place, scene->sphere_count > first);
-    if (status == BP_OK && entry->style.color_by == BP_COLOR_COLUMN && scene->sphere_count > first)
+    const bool added = bp_scene_shapes(scene) > first;
+    if (status == BP_OK && scene->triangle_count > first_triangle) {
+        status = bp_keep_mesh_file(entry->file, first_triangle, NULL, scene, err);
+        if (status == BP_OK) scene->mesh_files[scene->mesh_file_count - 1].of_particles = true;
+    }
+    if (status == BP_OK) note_film(film, place, added);
+    if (status == BP_OK && entry->style.color_by == BP_COLOR_COLUMN && added)
         keep_range(&entry->style, range, scene);
     if (status == BP_OK && !particles.flat) scene->up = particles.up;
     if (status == BP_OK && particles.flat) scene->flat = true;
@@ -96,8 +106,8 @@ static BpStatus read_file(const BpNode *file_node, const Entry *entry, size_t pl
 
 static BpStatus parse_entry(const BpNode *node, size_t place, const BpMaterialIndex *index,
                             const BpSceneChanges *changes, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"file", "frame",   "style", "radius",   "color", "bonds",
-                                        "box",  "solvent", "whole", "material", "select"};
+    static const char *const names[] = {"file", "frame",   "style", "radius",   "color",  "bonds",
+                                        "box",  "solvent", "whole", "material", "select", "shapes"};
     if (!json_is_object(node->value))
         return bp_node_wrong(node, "an object: { \"file\": \"run.gsd\", ... }", err);
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));

@@ -405,10 +405,12 @@ static BpStatus put_spheres(FILE *out, const BpScene *scene, BpError *err) {
     return BP_OK;
 }
 
+/* Files of "meshes" come first; without one there is no list. */
 static void put_meshes(FILE *out, const BpScene *scene) {
+    if (scene->mesh_file_count == 0 || scene->mesh_files[0].entry == NULL) return;
     fputs(",\n  \"meshes\": [", out);
     for (size_t i = 0; i < scene->mesh_file_count; i++) {
-        if (scene->mesh_files[i].in_memory) continue;
+        if (scene->mesh_files[i].entry == NULL) continue;
         fputs(i > 0 ? ",\n    " : "\n    ", out);
         bp_print_json_escaped(scene->mesh_files[i].entry, out);
     }
@@ -493,7 +495,7 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     if (written_spheres(scene) > 0) BP_TRY(put_spheres(out, scene, err));
     if (bp_scene_listed_triangles(scene) > 0) BP_TRY(put_triangles(out, scene, err));
     if (scene->listed_capsules > 0) BP_TRY(put_capsules(out, scene, err));
-    if (scene->mesh_file_count > 0) put_meshes(out, scene);
+    put_meshes(out, scene);
     if (scene->has_particles) put_particles(out, scene);
     fputs("\n}\n", out);
     if (ferror(out)) return bp_fail(err, BP_ERR_FILE, "cannot write the scene: %s", strerror(errno));

@@ -1,7 +1,7 @@
 /* polygon.c: see polygon.h. */
 #include "polygon.h"
 
-#include "orient.h"
+#include "base/orient.h"
 
 #include <float.h>
 #include <math.h>

@@ -7,6 +7,7 @@
 #include "base/plural.h"
 #include "bonds.h"
 #include "molecules.h"
+#include "style_bodies.h"
 #include "style_bonds.h"
 #include "style_colors.h"
 #include "style_sizes.h"
@@ -71,6 +72,7 @@ static BpStatus run(BpStyleJob *job, BpError *err) {
     say_unmatched(job, "radius", job->style->radii, job->style->radius_count);
     say_unmatched(job, "color", job->style->colors, job->style->color_count);
     BP_TRY(bp_style_put_particles(job, err));
+    BP_TRY(bp_style_put_bodies(job, err));
     if (bonds) BP_TRY(bp_style_put_bonds(job, err));
     if (job->style->box) BP_TRY(bp_style_put_box(job, err));
     if (job->summary != NULL) { /* the counts come first, and are known last */

@@ -26,6 +26,9 @@ static void free_arrays(BpParticles *p) {
     free(p->tag);
     free(p->radius);
     free(p->color);
+    free(p->body);
+    for (size_t s = 0; s < p->shape_count; s++) particle_shape_clear(&p->shapes[s]);
+    free(p->shapes);
     for (int i = 0; i < BP_PARTICLE_WANTED_MAX; i++) free(p->column[i]);
     for (size_t c = 0; c < p->column_count; c++) free(p->column_names[c]);
     free(p->column_names);
@@ -84,6 +87,7 @@ BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t co
     file->added = 0;
     file->gone_count = 0;
     file->colors = (ColorRange){0};
+    memset(&file->shapes, 0, sizeof file->shapes);
     file->taken_count = 0;
     if (file->out == NULL) return BP_OK; /* a frame that is passed over may lack the columns */
     for (size_t w = 0; w < file->wanted_count; w++) {
@@ -115,6 +119,7 @@ static bool grow(BpParticleFile *file, BpParticles *p) {
         resize(&p->position, capacity, sizeof *p->position) && resize(&p->tag, capacity, sizeof *p->tag);
     if (p->radius != NULL) good = good && resize(&p->radius, capacity, sizeof *p->radius);
     if (p->color != NULL) good = good && resize(&p->color, capacity, sizeof *p->color);
+    if (p->body != NULL) good = good && resize(&p->body, capacity, sizeof *p->body);
     for (size_t k = 0; k < file->taken_count; k++)
         good = good && resize(&p->column[file->wanted_place[k]], capacity, sizeof *p->column[0]);
     if (good) p->capacity = capacity;
@@ -211,7 +216,9 @@ BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_lin
     const BpStatus status = add_tag(p, particle, err);
     if (status == BP_ERR_SCENE) bp_error_at(err, file->input.name, (int)file->input.line, 0);
     BP_TRY(status);
-    BP_TRY(add_radius(p, particle->radius, err));
+    Particle shaped = *particle;
+    BP_TRY(frame_add_body(file, &shaped, with_line, err));
+    BP_TRY(add_radius(p, shaped.radius, err));
     BP_TRY(add_color(p, particle->color, err));
     memcpy(p->position[p->count], particle->position, sizeof p->position[0]);
     for (size_t k = 0; k < file->taken_count; k++) {
@@ -281,6 +288,7 @@ BpStatus frame_end(BpParticleFile *file, BpError *err) {
         memcpy(p->gone, file->gone, file->gone_count * sizeof *p->gone);
         p->gone_count = file->gone_count;
     }
+    frame_end_shapes(file);
     if (p->color == NULL && file->unread_color[0] != '\0' && file->needed == 0)
         bp_particles_note(p, "no colours from \"%s\", since red, green and blue must be columns",
                           file->unread_color);
@@ -340,21 +348,6 @@ void frame_cell(BpParticleFile *file, const double origin[3], const double edges
     }
     memcpy(p->cell_origin, origin, sizeof p->cell_origin);
     memcpy(p->cell, edges, sizeof p->cell);
-}
-
-void frame_note_shapes(BpParticleFile *file, uint64_t count, const char *kind) {
-    char number[32];
-    if (file->out == NULL || count == 0) return;
-    bp_particles_note(file->out, "%s %s%s drawn as %s", bp_format_whole(count, number, sizeof number), kind,
-                      bp_plural(count), count == 1 ? "a sphere" : "spheres");
-}
-
-bool frame_take_ellipsoid(Particle *particle, const double half_axes[3]) {
-    const double a = half_axes[0], b = half_axes[1], c = half_axes[2];
-    if (!(a > 0 && b > 0 && c > 0)) return false;
-    const bool round = a == b && b == c;
-    if (isnan(particle->radius)) particle->radius = round ? a : cbrt(a) * cbrt(b) * cbrt(c);
-    return !round;
 }
 
 bool frame_edges_of_angles(const double lengths[3], const double angles[3], double edges[3][3]) {

@@ -65,13 +65,42 @@ typedef struct BpParticleTag {
     uint8_t flags;                       /* BP_PARTICLE_... */
 } BpParticleTag;
 
+/* A shape that all particles of a type have. */
+typedef struct BpParticleShape {
+    const char *kind; /* "polyhedron"; static */
+    char *type;       /* that has it */
+    double (*vertices)[3];
+    size_t vertex_count;
+    uint32_t *corners, *ends; /* of its faces, polygons of vertices, counter-clockwise seen from outside: face
+                                 f has the corners from ends[f - 1], or 0, to ends[f] */
+    size_t face_count;
+    uint32_t (*triangles)[3]; /* that the faces are cut into; NULL until someone does */
+    size_t triangle_count;
+    bool closed;           /* the triangles enclose a body; false until then */
+    double capsule_radius; /* above 0: instead of faces, all points so near the line between two vertices */
+    double rounding;       /* of edges and corners, which the faces do without; 0: none */
+    double radius;         /* of the sphere around its centre that reaches its farthest point */
+} BpParticleShape;
+
+/* What a particle is where it is no sphere. */
+enum { BP_BODY_SPHERE = 0, BP_BODY_ELLIPSOID = 1, BP_BODY_SHAPES = 2 };
+typedef struct BpParticleBody {
+    uint32_t kind;        /* BP_BODY_SHAPES + i: shapes[i] */
+    float half_axes[3];   /* of an ellipsoid; above 0 */
+    float orientation[4]; /* w, x, y, z: the unit quaternion that turns the body */
+} BpParticleBody;
+
 /* One frame. Arrays that are Optional are NULL where the file has no such thing. */
 typedef struct BpParticles {
     size_t count;
     double (*position)[3];
     BpParticleTag *tag;
-    float *radius;                          /* Optional; NaN: none */
-    float (*color)[3];                      /* Optional; linear, in [0, 1] */
+    float *radius;           /* Optional; NaN: none */
+    float (*color)[3];       /* Optional; linear, in [0, 1] */
+    BpParticleBody *body;    /* Optional. The radius is then that of a sphere of an ellipsoid's volume, or a
+                                shape's own */
+    BpParticleShape *shapes; /* Optional */
+    size_t shape_count;
     double *column[BP_PARTICLE_WANTED_MAX]; /* of the wanted columns, in their order; Optional: one that need
                                                not be there; NaN: no value */
     char **column_names; /* Optional: of all columns of numbers, if one need not be there */

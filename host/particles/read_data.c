@@ -541,30 +541,31 @@ static BpStatus take_velocity(BpParticleFile *file, Data *data, char **words, si
     return BP_OK;
 }
 
-/* A sphere of the ellipsoid's volume: the file has its three diameters. */
+/* The file has the three diameters and w, x, y and z of the quaternion. */
 static BpStatus take_ellipsoid(BpParticleFile *file, Data *data, char **words, size_t count, BpError *err) {
-    double diameters[3];
+    double axes[3], orientation[4];
     uint32_t at = 0;
     if (count < 8)
         return input_fail(&file->input, true, err,
                           "found %zu word%s, expected an atom's number, three diameters and a quaternion",
                           count, bp_plural(count));
-    BP_TRY(take_numbers(&file->input, words + 1, 3, diameters, err));
+    BP_TRY(take_numbers(&file->input, words + 1, 3, axes, err));
+    BP_TRY(take_numbers(&file->input, words + 4, 4, orientation, err));
     BP_TRY(find_place(&file->input, data, words[0], &at, err));
-    return frame_set_radius(file, at, cbrt(diameters[0] * diameters[1] * diameters[2]) / 2, err);
+    for (int i = 0; i < 3; i++) axes[i] /= 2;
+    file->shapes.has_orientations = true;
+    return frame_set_ellipsoid(file, at, axes, orientation, err);
 }
 
 static void note_shapes(BpParticles *p, const Data *data) {
-    static const char *const words[LAMMPS_SHAPE_COUNT][2] = {[LAMMPS_ELLIPSOID] = {"ellipsoid", "ellipsoids"},
-                                                             [LAMMPS_LINE] = {"line", "lines"},
+    static const char *const words[LAMMPS_SHAPE_COUNT][2] = {[LAMMPS_LINE] = {"line", "lines"},
                                                              [LAMMPS_TRIANGLE] = {"triangle", "triangles"},
                                                              [LAMMPS_BODY] = {"body", "bodies"}};
-    for (int s = LAMMPS_ELLIPSOID; s < LAMMPS_SHAPE_COUNT && p != NULL; s++) {
-        const unsigned long long count = data->shapes[s];
+    for (int s = 0; s < LAMMPS_SHAPE_COUNT && p != NULL; s++) {
+        const unsigned long long count = words[s][0] != NULL ? data->shapes[s] : 0;
         if (count > 0)
-            bp_particles_note(p, "%llu %s drawn as %s%s", count, words[s][count > 1],
-                              count > 1 ? "spheres" : "a sphere",
-                              s == LAMMPS_ELLIPSOID ? " of the same volume" : "");
+            bp_particles_note(p, "%llu %s drawn as %s", count, words[s][count > 1],
+                              count > 1 ? "spheres" : "a sphere");
     }
 }
 

@@ -21,7 +21,8 @@ typedef struct Dump {
         molecule;        /* places of columns; -1: nowhere */
     size_t known_masses; /* those of elements, in this frame */
     bool united;         /* some stand for a carbon and its hydrogens */
-    uint64_t ellipsoids;
+    int quaternion[4];   /* the columns of w, x, y, z; the first below 0: there are none */
+    const char *order;   /* how those are read that do not say which they are; NULL: they do */
 } Dump;
 
 /* What is kept from frame to frame: a dump names its units once. */
@@ -83,16 +84,43 @@ static int column_named(const Dump *dump, const char *name) {
     return -1;
 }
 
-/* The columns of an ellipsoid's three diameters, under the name of the attribute or as a compute "shape" has
- * them. */
+/* The columns of an ellipsoid's three diameters, under the name of the attribute or as a compute "shape" or
+ * "diameter" has them. */
 static void find_shape(Dump *dump) {
-    static const char *const sets[2][3] = {{"shapex", "shapey", "shapez"},
-                                           {"c_shape[1]", "c_shape[2]", "c_shape[3]"}};
-    for (int s = 0; s < 2; s++) {
+    static const char *const sets[3][3] = {{"shapex", "shapey", "shapez"},
+                                           {"c_shape[1]", "c_shape[2]", "c_shape[3]"},
+                                           {"c_diameter[1]", "c_diameter[2]", "c_diameter[3]"}};
+    for (int s = 0; s < 3; s++) {
         for (int i = 0; i < 3; i++) dump->shape[i] = column_named(dump, sets[s][i]);
         if (dump->shape[0] >= 0 && dump->shape[1] >= 0 && dump->shape[2] >= 0) return;
     }
     dump->shape[0] = -1;
+}
+
+/* The columns of a quaternion, w first. Computes do not say in which order they have it: "orient" is that of
+ * OVITO's manual, whose importer has the scalar last; others go by LAMMPS's own order, as people name them.
+ */
+static void find_quaternion(Dump *dump) {
+    static const struct {
+        const char *name[4];
+        const char *order;
+    } sets[4] = {
+        {{"quatw", "quati", "quatj", "quatk"}, NULL},
+        {{"c_orient[4]", "c_orient[1]", "c_orient[2]", "c_orient[3]"},
+         "c_orient[1] to [4] read as quati, quatj, quatk and quatw"},
+        {{"c_q[1]", "c_q[2]", "c_q[3]", "c_q[4]"}, "c_q[1] to [4] read as quatw, quati, quatj and quatk"},
+        {{"c_quat[1]", "c_quat[2]", "c_quat[3]", "c_quat[4]"},
+         "c_quat[1] to [4] read as quatw, quati, quatj and quatk"}};
+    for (int s = 0; s < 4; s++) {
+        bool whole = true;
+        for (int i = 0; i < 4; i++) {
+            dump->quaternion[i] = column_named(dump, sets[s].name[i]);
+            whole &= dump->quaternion[i] >= 0;
+        }
+        dump->order = sets[s].order;
+        if (whole) return;
+    }
+    dump->quaternion[0] = -1;
 }
 
 static BpStatus take_columns(Input *input, const char *text, Dump *dump, BpError *err) {
@@ -111,6 +139,7 @@ static BpStatus take_columns(Input *input, const char *text, Dump *dump, BpError
     dump->mass = column_named(dump, "mass");
     dump->molecule = column_named(dump, "mol");
     find_shape(dump);
+    find_quaternion(dump);
     for (int s = 0; s < 4; s++) {
         for (int i = 0; i < 3; i++) dump->position[i] = column_named(dump, sets[s][i]);
         if (dump->position[0] < 0 || dump->position[1] < 0 || dump->position[2] < 0) continue;
@@ -133,16 +162,17 @@ static void settle_masses(BpParticles *p, const Dump *dump, size_t count) {
     atom_note_masses(p, dump->known_masses, count, "atoms", dump->united);
 }
 
-static BpStatus take_shape(const Input *input, Dump *dump, char *const *words, Particle *particle,
+static BpStatus take_shape(const Input *input, const Dump *dump, char *const *words, Particle *particle,
                            BpError *err) {
-    double half_axes[3];
     if (dump->shape[0] < 0) return BP_OK;
     for (int i = 0; i < 3; i++) {
-        if (!word_number(words[dump->shape[i]], &half_axes[i]))
+        if (!word_number(words[dump->shape[i]], &particle->half_axes[i]))
             return input_wrong(input, words[dump->shape[i]], "a diameter", err);
-        half_axes[i] /= 2;
+        particle->half_axes[i] /= 2;
     }
-    dump->ellipsoids += frame_take_ellipsoid(particle, half_axes);
+    for (int i = 0; i < 4 && dump->quaternion[0] >= 0; i++)
+        if (!word_number(words[dump->quaternion[i]], &particle->orientation[i]))
+            return input_wrong(input, words[dump->quaternion[i]], "a number of a quaternion", err);
     return BP_OK;
 }
 
@@ -230,6 +260,8 @@ static BpStatus take_frame(BpParticleFile *file, Dump *dump, BpError *err) {
         return input_fail(input, true, err, "found ITEM: ATOMS first, expected ITEM: NUMBER OF ATOMS");
     BP_TRY(take_columns(input, line + 11, dump, err));
     BP_TRY(frame_begin(file, (const char *const *)dump->columns, dump->column_count, err));
+    file->shapes.has_orientations = dump->quaternion[0] >= 0;
+    file->shapes.order = dump->order;
     if (file->out != NULL) {
         file->out->up = 2;
         const State *const state = file->state;
@@ -244,7 +276,6 @@ static BpStatus take_frame(BpParticleFile *file, Dump *dump, BpError *err) {
         BP_TRY(take_atom(file, dump, line, err));
     }
     settle_masses(file->out, dump, file->added);
-    frame_note_shapes(file, dump->ellipsoids, "ellipsoid");
     return BP_OK;
 }
 

@@ -8,7 +8,9 @@
 #include "reader.h"
 
 #include "base/format.h"
+#include "base/message_text.h"
 #include "base/plural.h"
+#include "quaternion.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -380,6 +382,7 @@ static BpStatus take_texts(const BpParticleFile *file, const char *chunk, size_t
 /* What is known of a type. */
 typedef struct Kind {
     GsdShape shape;
+    uint32_t body;      /* BP_BODY_SPHERE, or that of the shape, which is then the frame's */
     uint64_t particles; /* of this type */
 } Kind;
 
@@ -392,13 +395,45 @@ typedef struct Types {
 } Types;
 
 static void types_clear(Types *types) {
-    for (size_t i = 0; i < types->kind_count; i++) free(types->kinds[i].shape.sphere);
+    for (size_t i = 0; i < types->kind_count; i++) gsd_shape_clear(&types->kinds[i].shape);
     free(types->kinds);
     free(types->names.text);
 }
 
+static void copy_name(const Texts *names, size_t number, char name[BP_PARTICLE_NAME_SIZE + 1]) {
+    snprintf(name, BP_PARTICLE_NAME_SIZE + 1, "%.*s", (int)names->width, names->text + number * names->width);
+}
+
+static BpStatus fail_shape(const BpParticleFile *file, const Types *types, size_t number, const char *text,
+                           BpError *err) {
+    char name[BP_PARTICLE_NAME_SIZE + 1] = "A", shown[64];
+    if (number < types->names.count) copy_name(&types->names, number, name);
+    bp_printable(name, shown, sizeof shown);
+    return input_fail(&file->input, false, err,
+                      "particles/type_shapes: shape %zu (from 0), of the type \"%s\": %s", number, shown,
+                      text);
+}
+
+/* Hands the shape of a type over to the frame. */
+static BpStatus keep_body(BpParticleFile *file, const Types *types, Kind *kind, BpError *err) {
+    BpParticles *const p = file->out;
+    char name[BP_PARTICLE_NAME_SIZE + 1] = "A";
+    const size_t number = (size_t)(kind - types->kinds);
+    BpParticleShape *const shapes = realloc(p->shapes, (p->shape_count + 1) * sizeof *shapes);
+    if (shapes == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the shapes of types");
+    p->shapes = shapes;
+    if (number < types->names.count) copy_name(&types->names, number, name);
+    kind->shape.body.type = strdup(name);
+    if (kind->shape.body.type == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the shapes of types");
+    kind->body = BP_BODY_SHAPES + (uint32_t)p->shape_count;
+    p->shapes[p->shape_count++] = kind->shape.body;
+    kind->shape.body = (BpParticleShape){0};
+    return BP_OK;
+}
+
 /* The shapes of the types, which HOOMD-blue's hard particles have. */
-static BpStatus take_shapes(const BpParticleFile *file, Types *types, BpError *err) {
+static BpStatus take_shapes(BpParticleFile *file, Types *types, BpError *err) {
     Texts texts;
     BpStatus status = take_texts(file, "particles/type_shapes", SHAPE_BYTES_MAX, &texts, err);
     if (status == BP_OK) types->kinds = calloc(texts.count + 1, sizeof *types->kinds);
@@ -409,16 +444,15 @@ static BpStatus take_shapes(const BpParticleFile *file, Types *types, BpError *e
         BpError own = {0};
         status = gsd_shape_read(texts.text + i * texts.width, texts.width, &kind->shape, &own);
         types->unions |= kind->shape.sphere_count > 0;
-        if (status != BP_OK)
-            status = input_fail(&file->input, false, err, "particles/type_shapes: shape %zu (from 0): %s", i,
-                                own.message);
+        if (status != BP_OK) status = fail_shape(file, types, i, own.message, err);
         bp_error_clear(&own);
+        if (status == BP_OK && kind->shape.has_body) status = keep_body(file, types, kind, err);
     }
     free(texts.text);
     return status;
 }
 
-static BpStatus take_types(const BpParticleFile *file, Types *types, BpError *err) {
+static BpStatus take_types(BpParticleFile *file, Types *types, BpError *err) {
     types->unknown.shape.diameter = NAN;
     BP_TRY(take_texts(file, "particles/types", BP_PARTICLE_NAME_SIZE, &types->names, err));
     return take_shapes(file, types, err);
@@ -426,7 +460,7 @@ static BpStatus take_types(const BpParticleFile *file, Types *types, BpError *er
 
 /* Says which shapes are not drawn as they are. */
 static void note_shapes(BpParticleFile *file, const Types *types) {
-    static const char *const kinds[] = {"ellipsoid", "polygon", "polyhedron", "sphere union", "other shape"};
+    static const char *const kinds[] = {"sphere union", "other shape"};
     uint64_t unions = 0, spheres = 0;
     char number[32], other[32];
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
@@ -437,7 +471,7 @@ static void note_shapes(BpParticleFile *file, const Types *types) {
         frame_note_shapes(file, count, kinds[k]);
     }
     for (size_t i = 0; i < types->kind_count; i++) {
-        if (types->kinds[i].shape.sphere_count == 0) continue;
+        if (types->kinds[i].shape.sphere_count <= 1) continue;
         unions += types->kinds[i].particles;
         spheres += types->kinds[i].particles * types->kinds[i].shape.sphere_count;
     }
@@ -484,25 +518,19 @@ done:
 
 enum { POSITION, DIAMETER, TYPE, MASS, CHARGE, VELOCITY, ORIENTATION, CHUNK_COUNT };
 
-/* Turns a vector by a quaternion (w, x, y, z) of any length; by none if that is 0. */
-static void turn(const double q[4], const double v[3], double out[3]) {
-    const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    const double s = square > 0 ? 2 / square : 0;
-    for (int i = 0; i < 3; i++) {
-        const int k = (i + 1) % 3, l = (i + 2) % 3;
-        out[i] = v[i] + s * (q[0] * (q[1 + k] * v[l] - q[1 + l] * v[k]) +
-                             q[1 + k] * (q[1 + i] * v[k] - q[1 + k] * v[i]) +
-                             q[1 + l] * (q[1 + i] * v[l] - q[1 + l] * v[i]));
-    }
-}
-
-/* Hands a particle over, as a sphere or as those of its shape. */
-static BpStatus add_shape(BpParticleFile *file, const GsdShape *shape, const double orientation[4],
-                          Particle *particle, double *values, BpError *err) {
+/* Hands a particle over, as what it is or as the spheres of its shape. */
+static BpStatus add_shape(BpParticleFile *file, const Kind *kind, Particle *particle, double *values,
+                          BpError *err) {
+    const GsdShape *const shape = &kind->shape;
     const double center[3] = {particle->position[0], particle->position[1], particle->position[2]};
+    double rotation[3][3];
+    memcpy(particle->half_axes, shape->half_axes, sizeof particle->half_axes);
+    particle->body = kind->body;
     if (shape->sphere_count == 0) return frame_add(file, particle, false, err);
+    quaternion_normalize(particle->orientation);
+    quaternion_rotation(particle->orientation, rotation);
     for (size_t i = 0; i < shape->sphere_count; i++) {
-        turn(orientation, shape->sphere[i], particle->position);
+        quaternion_turn((const double(*)[3])rotation, shape->sphere[i], particle->position);
         for (int c = 0; c < 3; c++) values[c] = particle->position[c] += center[c];
         particle->radius = shape->sphere[i][3];
         values[3] = 2 * particle->radius;
@@ -514,7 +542,8 @@ static BpStatus add_shape(BpParticleFile *file, const GsdShape *shape, const dou
 static BpStatus take_particles(BpParticleFile *file, uint64_t count, Column *columns, Types *types,
                                uint32_t *first, BpError *err) {
     for (uint64_t i = 0; i < count; i++) {
-        double place[3] = {0, 0, 0}, diameter = 1, type = 0, orientation[4] = {1, 0, 0, 0};
+        double place[3] = {0, 0, 0}, diameter = 1, type = 0;
+        Particle particle = PARTICLE_NONE;
         double values[9] = {0, 0, 0, 1, 1, 0, 0, 0, 0};
         char name[BP_PARTICLE_NAME_SIZE + 1] = "A";
         BP_TRY(column_row(file, &columns[POSITION], i, place, err));
@@ -523,26 +552,23 @@ static BpStatus take_particles(BpParticleFile *file, uint64_t count, Column *col
         BP_TRY(column_row(file, &columns[MASS], i, &values[4], err));
         BP_TRY(column_row(file, &columns[CHARGE], i, &values[5], err));
         BP_TRY(column_row(file, &columns[VELOCITY], i, &values[6], err));
-        BP_TRY(column_row(file, &columns[ORIENTATION], i, orientation, err));
+        BP_TRY(column_row(file, &columns[ORIENTATION], i, particle.orientation, err));
         if (!(type >= 0) || (types->names.count > 0 && !(type < (double)types->names.count)))
             return input_fail(&file->input, false, err,
                               "particle %" PRIu64 " (from 0): found type %.0f, expected one below %zu", i,
                               type, types->names.count);
-        if (types->names.count > 0)
-            snprintf(name, sizeof name, "%.*s", (int)types->names.width,
-                     types->names.text + (size_t)type * types->names.width);
+        if (types->names.count > 0) copy_name(&types->names, (size_t)type, name);
         Kind *const kind = type < (double)types->kind_count ? &types->kinds[(size_t)type] : &types->unknown;
         kind->particles++;
         if (columns[DIAMETER].entry == NULL && !isnan(kind->shape.diameter)) diameter = kind->shape.diameter;
         memcpy(values, place, sizeof place);
         values[3] = diameter;
-        Particle particle = PARTICLE_NONE;
         memcpy(particle.position, place, sizeof place);
         particle.radius = diameter / 2;
         particle.type = name;
         particle.values = values;
         if (first != NULL) first[i] = (uint32_t)file->added;
-        BP_TRY(add_shape(file, &kind->shape, orientation, &particle, values, err));
+        BP_TRY(add_shape(file, kind, &particle, values, err));
     }
     note_shapes(file, types);
     return BP_OK;
@@ -566,6 +592,7 @@ BpStatus read_gsd(BpParticleFile *file, bool *end, BpError *err) {
     BP_TRY(frame_begin(file, names, 9, err));
     if (file->out == NULL) return BP_OK; /* nothing else has to be passed over */
     file->out->up = 2;
+    file->shapes.has_orientations = true; /* by default none is turned */
     BP_TRY_GOTO(status, take_box(file, err), done);
     BP_TRY_GOTO(status, column_open(file, "particles/N", 1, 1, &number, err), done);
     BP_TRY_GOTO(status, column_row(file, &number, 0, &count, err), done);
@@ -577,7 +604,7 @@ BpStatus read_gsd(BpParticleFile *file, bool *end, BpError *err) {
     }
     BP_TRY_GOTO(status, take_types(file, &types, err), done);
     for (int c = 0; c < CHUNK_COUNT; c++)
-        if (c != ORIENTATION || types.unions)
+        if (c != ORIENTATION || types.kind_count > 0)
             BP_TRY_GOTO(status, column_open(file, chunks[c], (uint64_t)count, widths[c], &columns[c], err),
                         done);
     if (count > 0 && columns[POSITION].entry == NULL) {

@@ -23,6 +23,7 @@ typedef enum Role {
     COLOR,
     NUMBER,
     SHAPE,
+    ORIENTATION,
     ATOM_NAME,
     RESIDUE,
     OTHER
@@ -38,8 +39,7 @@ typedef struct Layout {
     const char *columns[BP_PARTICLE_COLUMNS_MAX];
     int column_word[BP_PARTICLE_COLUMNS_MAX];
     size_t column_count;
-    bool extended, whole_colors; /* whole_colors: they are of type I */
-    uint64_t ellipsoids;
+    bool extended, whole_colors;                       /* whole_colors: they are of type I */
     bool number_seen[BP_ELEMENT_MAX + 1], symbol_seen; /* among the species */
 } Layout;
 
@@ -82,7 +82,8 @@ static Role role_of(const char *name, char type, int64_t count) {
                  {"resname", RESIDUE, "S", 1},
                  {"residuenames", RESIDUE, "S", 1},
                  {"aspherical_shape", SHAPE, "R", 3},
-                 {"shape", SHAPE, "R", 3}};
+                 {"shape", SHAPE, "R", 3},
+                 {"orientation", ORIENTATION, "R", 4}}; /* x, y, z, w, as OVITO has it */
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (strcasecmp(name, known[i].name) == 0 && strchr(known[i].types, type) != NULL &&
             count == known[i].count)
@@ -240,6 +241,8 @@ static BpStatus begin_frame(BpParticleFile *file, const char *comment, Layout *l
     else
         plain_layout(layout);
     BP_TRY(frame_begin(file, layout->columns, layout->column_count, err));
+    for (size_t p = 0; p < layout->property_count; p++)
+        file->shapes.has_orientations |= layout->property[p].role == ORIENTATION;
     if (file->out != NULL) {
         file->out->angstrom = 1;
         if (!layout->extended) take_units(file->out, comment);
@@ -292,7 +295,7 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
                           BpError *err) {
     Input *const input = &file->input;
     char *line, *words[WORDS_MAX], type[8];
-    double values[BP_PARTICLE_COLUMNS_MAX], shape[3] = {0, 0, 0};
+    double values[BP_PARTICLE_COLUMNS_MAX];
     Particle particle = PARTICLE_NONE;
     BP_TRY(input_line(input, &line, err));
     if (line == NULL)
@@ -313,11 +316,14 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
         for (size_t i = 0; i < 3; i++) {
             if (role == POSITION && !word_number_or_none(words[w + i], &particle.position[i]))
                 return fail_coordinate(input, layout, words, w + i, err);
-            if (role == SHAPE && !word_number(words[w + i], &shape[i]))
+            if (role == SHAPE && !word_number(words[w + i], &particle.half_axes[i]))
                 return input_wrong(input, words[w + i], "a finite number: half an axis of an ellipsoid", err);
             if (role == COLOR && !word_number(words[w + i], &particle.color[i]))
                 return input_wrong(input, words[w + i], "a finite number: a share of a colour", err);
         }
+        for (size_t i = 0; role == ORIENTATION && i < 4; i++)
+            if (!word_number(words[w + i], &particle.orientation[(i + 1) % 4]))
+                return input_wrong(input, words[w + i], "a finite number: x, y, z or w of a quaternion", err);
         if (role == SPECIES) {
             particle.element = bp_element_of_species(words[w]);
             particle.type = words[w];
@@ -348,7 +354,6 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
         }
         w += (size_t)layout->property[p].words;
     }
-    layout->ellipsoids += frame_take_ellipsoid(&particle, shape);
     for (size_t k = 0; k < file->taken_count; k++) {
         const int c = file->wanted_column[k];
         values[c] = NAN;
@@ -438,7 +443,6 @@ BpStatus read_xyz(BpParticleFile *file, bool *end, BpError *err) {
                                                       : bp_fail(err, BP_ERR_MEMORY, "out of memory");
     for (uint64_t i = 0; i < count && status == BP_OK; i++) status = take_atom(file, layout, i, count, err);
     if (status == BP_OK) status = check_behind(file, layout, err);
-    if (status == BP_OK) frame_note_shapes(file, layout->ellipsoids, "ellipsoid");
     if (status == BP_OK) note_numbers(file, layout);
     free(value);
     free(layout);

@@ -36,6 +36,13 @@ struct BpParticleFile {
     size_t added;                                /* in this frame, with those that were left out */
     uint32_t *gone;                              /* the numbers of those that were left out, rising */
     size_t gone_count, gone_capacity;
+    struct {
+        uint64_t bodies;          /* in this frame: ellipsoids, and what has another shape */
+        uint64_t flat;            /* ellipsoids with an axis of 0 */
+        uint64_t scaled, without; /* quaternions whose length is not 1, or that have no direction */
+        bool has_orientations;    /* set by the reader after frame_begin */
+        const char *order;        /* set by the reader: how it read those that do not say it; NULL: they do */
+    } shapes;
     char unread_color[32]; /* a column of this frame that seems to hold colours; "" */
     ColorRange colors;     /* of this frame; what the type says of them, the reader sets after frame_begin */
     void *state;           /* of the format's reader, freed with the file */
@@ -47,14 +54,17 @@ typedef struct Particle {
     double position[3]; /* NaN: it has no place */
     const char *name, *residue, *chain, *type;
     uint8_t element, flags;
-    double radius;        /* NaN: none */
-    double color[3];      /* color[0] NaN: none; else numbers of any scale (color_range.h) */
-    const double *values; /* of the columns named to frame_begin */
+    double radius;         /* NaN: none */
+    double color[3];       /* color[0] NaN: none; else numbers of any scale (color_range.h) */
+    const double *values;  /* of the columns named to frame_begin */
+    double half_axes[3];   /* of an ellipsoid, which has no other radius; all 0: it is none */
+    double orientation[4]; /* w, x, y, z, of any length */
+    uint32_t body;         /* BP_BODY_SPHERE, or BP_BODY_SHAPES and more: a shape of out->shapes */
 } Particle;
 
 #define PARTICLE_NONE                                                                                        \
     {                                                                                                        \
-        .radius = NAN, .color = { NAN, NAN, NAN }                                                            \
+        .radius = NAN, .color = {NAN, NAN, NAN}, .orientation = { 1, 0, 0, 0 }                               \
     }
 
 /* The line behind a frame, other than blank ones, which stays to be taken; NULL: the file ends, or cannot be
@@ -104,9 +114,15 @@ void frame_cell(BpParticleFile *file, const double origin[3], const double edges
 /* Notes how many particles of the frame have another shape than the sphere that is drawn: `kind` is
  * "ellipsoid", for example, and 0 notes nothing. */
 void frame_note_shapes(BpParticleFile *file, uint64_t count, const char *kind);
-/* Gives a particle without a radius that of the sphere of an ellipsoid's volume, if all three half-axes are
- * above 0. True: it is an ellipsoid, and no sphere. */
-bool frame_take_ellipsoid(Particle *particle, const double half_axes[3]);
+/* Makes the particle of that number an ellipsoid, as frame_add does. */
+BpStatus frame_set_ellipsoid(BpParticleFile *file, uint32_t number, const double half_axes[3],
+                             const double orientation[4], BpError *err);
+
+/* Of frame_add() (frame_shapes.c): the body of particle p->count, and its radius. */
+BpStatus frame_add_body(BpParticleFile *file, Particle *particle, bool with_line, BpError *err);
+/* After all of a frame: notes what became of axes and orientations. */
+void frame_end_shapes(BpParticleFile *file);
+void particle_shape_clear(BpParticleShape *shape);
 
 typedef BpStatus ReadFrame(BpParticleFile *file, bool *end, BpError *err);
 ReadFrame read_xyz, read_pdb, read_cif, read_crystal, read_poscar, read_gro, read_dump, read_data, read_gsd,

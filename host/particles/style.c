@@ -6,7 +6,7 @@
 _Static_assert(BP_PARTICLE_WANTED_MAX >= 2 + 3 * BP_SELECT_COLUMNS_MAX, "all columns that a style may want");
 
 void bp_particle_style_defaults(BpParticleStyle *style) {
-    *style = (BpParticleStyle){.radius = 1, .whole = true};
+    *style = (BpParticleStyle){.radius = 1, .whole = true, .shapes = true};
 }
 
 void bp_particle_style_clear(BpParticleStyle *style) {

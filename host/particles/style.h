@@ -58,6 +58,7 @@ typedef struct BpParticleStyle {
     bool bonds;         /* drawn as capsules */
     double bond_radius; /* 0: by the style */
     bool box, solvent, whole;
+    bool shapes; /* what is no sphere is drawn as it is; else as a sphere too */
 } BpParticleStyle;
 
 /* Space-filling, everything by what the file has, solvent hidden, molecules whole. */

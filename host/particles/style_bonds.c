@@ -5,6 +5,7 @@
 #include "scene/capsule_rules.h"
 #include "scene/vector.h"
 #include "style_colors.h"
+#include "style_shapes.h"
 #include "style_sizes.h"
 #include "style_spheres.h"
 
@@ -65,7 +66,9 @@ BpStatus bp_style_put_bonds(BpStyleJob *job, BpError *err) {
             radius = molecules ? STICK_ANGSTROM * p->angstrom
                                : 0.4 * fmin(bp_style_radius(job, a), bp_style_radius(job, b));
         const double half = sqrt(bp_distance2(p->position[a], p->position[b])) / 2 + 1.001 * radius;
-        const bool hidden = !clear && half < bp_style_radius(job, a) && half < bp_style_radius(job, b);
+        const bool round = !bp_style_has_body(job, a) && !bp_style_has_body(job, b);
+        const bool hidden =
+            !clear && round && half < bp_style_radius(job, a) && half < bp_style_radius(job, b);
         bp_style_color(job, a, color[0]);
         bp_style_color(job, b, color[1]);
         if (!hidden)

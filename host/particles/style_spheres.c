@@ -5,6 +5,7 @@
 #include "base/pages.h"
 #include "base/thread_pool.h"
 #include "style_colors.h"
+#include "style_shapes.h"
 #include "style_sizes.h"
 
 #include <stdlib.h>
@@ -76,6 +77,12 @@ static uint32_t albedo_of(BpStyleJob *job, const double color[3]) {
     return (uint32_t)scene->albedo_count++;
 }
 
+BpStatus bp_style_put_color(BpStyleJob *job, const double color[3], uint32_t *albedo, BpError *err) {
+    BP_TRY(make_room(job, 0, 1, err));
+    *albedo = albedo_of(job, color);
+    return BP_OK;
+}
+
 BpStatus bp_style_put_capsule(BpStyleJob *job, const double a[3], const double b[3], double radius,
                               const double color_a[3], const double color_b[3], BpError *err) {
     BpScene *const scene = job->scene;
@@ -104,7 +111,8 @@ BpStatus bp_style_put_capsule(BpStyleJob *job, const double a[3], const double b
  * where the spheres of each block belong. */
 typedef struct Blocks {
     BpStyleJob *job;
-    size_t *places; /* of each block: how many particles are shown, then the place of its first */
+    size_t *places; /* of each block: how many spheres are shown, then the place of its first */
+    size_t *bodies; /* of each block: how many others are */
     bool one_color; /* of all: then there is one entry for it, which caches hold */
 } Blocks;
 
@@ -117,7 +125,11 @@ static void find_radii(void *context, uint32_t block, unsigned thread) {
         const double radius = bp_style_radius(job, i);
         /* As in scenes; NaN, 0 and below: nothing to see. */
         job->shown[i] = radius > 1e-37 && radius <= BP_COORDINATE_MAX;
-        blocks->places[block] += job->shown[i];
+        if (!job->shown[i]) continue;
+        if (bp_style_has_body(job, i))
+            blocks->bodies[block]++;
+        else
+            blocks->places[block]++;
     }
 }
 
@@ -128,7 +140,7 @@ static void fill_spheres(void *context, uint32_t block, unsigned thread) {
     size_t place = blocks->places[block];
     for (size_t i = bp_block_begin(block); i < bp_block_end(block, job->p->count); i++) {
         double color[3];
-        if (!job->shown[i]) continue;
+        if (!job->shown[i] || bp_style_has_body(job, i)) continue;
         if (!blocks->one_color || place == 0) bp_style_color(job, i, color);
         fill_sphere(job, place, job->p->position[i], bp_style_radius(job, i), blocks->one_color ? 0 : place,
                     !blocks->one_color || place == 0 ? color : NULL);
@@ -139,14 +151,15 @@ static void fill_spheres(void *context, uint32_t block, unsigned thread) {
 BpStatus bp_style_put_particles(BpStyleJob *job, BpError *err) {
     const BpParticles *const p = job->p;
     const uint32_t block_count = bp_block_count(p->count);
-    size_t put = 0;
-    const size_t first = job->scene->sphere_count;
+    size_t put = 0, bodies = 0;
     const bool one_color = job->color_by == BP_COLOR_CONSTANT && job->style->color_count == 0;
     BP_TRY(make_room(job, job->shown_count, one_color ? 1 : job->shown_count, err));
-    Blocks blocks = {job, calloc((size_t)block_count + 1, sizeof *blocks.places), one_color};
+    Blocks blocks = {job, calloc((size_t)block_count + 1, sizeof *blocks.places),
+                     calloc((size_t)block_count + 1, sizeof *blocks.bodies), one_color};
     BpThreadPool *pool = bp_thread_pool_create(block_count > 1 ? 0 : 1);
-    if (blocks.places == NULL || pool == NULL) {
+    if (blocks.places == NULL || blocks.bodies == NULL || pool == NULL) {
         free(blocks.places);
+        free(blocks.bodies);
         bp_thread_pool_destroy(&pool);
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu particles", p->count);
     }
@@ -155,17 +168,19 @@ BpStatus bp_style_put_particles(BpStyleJob *job, BpError *err) {
         const size_t here = blocks.places[b];
         blocks.places[b] = put;
         put += here;
+        bodies += blocks.bodies[b];
     }
     bp_parallel_for(pool, fill_spheres, &blocks, block_count);
     bp_thread_pool_destroy(&pool);
     free(blocks.places);
+    free(blocks.bodies);
     count_spheres(job, put, one_color && put > 0 ? 1 : put);
-    const size_t without = job->shown_count - put;
+    const size_t without = job->shown_count - put - bodies;
     char number[32];
     if (without > 0)
         bp_style_say(job, "left out: %s without a radius above 0",
                      bp_format_whole(without, number, sizeof number));
-    if (job->scene->sphere_count == first)
+    if (put + bodies == 0)
         return bp_fail(err, BP_ERR_SCENE, "found no particle to show, expected one at least");
     return BP_OK;
 }

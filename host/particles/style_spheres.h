@@ -7,9 +7,13 @@
 
 #include "style_job.h"
 
-/* All particles that are shown and have a radius; job->shown is false for the others then. BP_ERR_SCENE:
- * none. */
+/* All particles that are shown, have a radius and are spheres; job->shown is false for those without a radius
+ * then. BP_ERR_SCENE: none is shown. */
 BpStatus bp_style_put_particles(BpStyleJob *job, BpError *err);
+
+/* The place of a colour among those of the scene, which may be there already; BP_NO_ALBEDO where the material
+ * has none. */
+BpStatus bp_style_put_color(BpStyleJob *job, const double color[3], uint32_t *albedo, BpError *err);
 
 /* One capsule, in two colours. */
 BpStatus bp_style_put_capsule(BpStyleJob *job, const double a[3], const double b[3], double radius,

@@ -228,6 +228,14 @@ size_t bp_scene_listed_triangles(const BpScene *scene) {
     return scene->mesh_file_count > 0 ? scene->mesh_files[0].first : scene->triangle_count;
 }
 
+void bp_scene_particle_triangles(const BpScene *scene, size_t *first, size_t *end) {
+    size_t mesh = 0;
+    while (mesh < scene->mesh_file_count && !scene->mesh_files[mesh].of_particles) mesh++;
+    *first = mesh < scene->mesh_file_count ? scene->mesh_files[mesh].first : scene->triangle_count;
+    while (mesh < scene->mesh_file_count && scene->mesh_files[mesh].of_particles) mesh++;
+    *end = mesh < scene->mesh_file_count ? scene->mesh_files[mesh].first : scene->triangle_count;
+}
+
 const char *bp_triangle_name(const BpScene *scene, size_t triangle, char text[BP_SPHERE_NAME_SIZE]) {
     const size_t of_boxes = scene->box_count * BP_BOX_TRIANGLES,
                  of_quads = scene->quad_count * BP_QUAD_TRIANGLES;

@@ -167,8 +167,9 @@ typedef enum BpLighting {
 typedef struct BpShapeFile {
     char *file; /* as the scene names it */
     size_t first;
-    char *entry;    /* NULL for a cloud; else that of "particles" or "meshes", as JSON */
-    bool in_memory; /* no file: a set that the caller handed over, whose name `file` is */
+    char *entry;       /* NULL for a cloud; else that of "particles" or "meshes", as JSON */
+    bool in_memory;    /* no file: a set that the caller handed over, whose name `file` is */
+    bool of_particles; /* among meshes: particles of this file that are no spheres */
 } BpShapeFile;
 
 /* The legend of particles that are coloured by a column. */
@@ -283,6 +284,8 @@ const char *bp_shape_name(const BpScene *scene, size_t shape, char text[BP_SPHER
 
 /* The triangles that stand in the scene itself; those of meshes follow. */
 size_t bp_scene_listed_triangles(const BpScene *scene);
+/* Those of particles, from *first up to *end. */
+void bp_scene_particle_triangles(const BpScene *scene, size_t *first, size_t *end);
 
 /* Shapes are the spheres, then the triangles, then the capsules: how many, one of them, or NULL where the
  * shape is another, the material of one, into materials[], its own albedo, into albedos[], or

@@ -5,11 +5,14 @@
 #include <math.h>
 #include <string.h>
 
-/* Where particles stand on the plane, meshes that a caller handed over beside them do so too. */
+/* Where particles stand on the plane, those of them that are meshes do so too, and meshes that a caller
+ * handed over beside them. */
 static size_t first_triangle(const BpScene *scene) {
     size_t mesh = 0;
     if (!scene->has_particles) return 0;
-    while (mesh < scene->mesh_file_count && !scene->mesh_files[mesh].in_memory) mesh++;
+    while (mesh < scene->mesh_file_count && !scene->mesh_files[mesh].in_memory &&
+           !scene->mesh_files[mesh].of_particles)
+        mesh++;
     return mesh < scene->mesh_file_count ? scene->mesh_files[mesh].first : scene->triangle_count;
 }
 

@@ -1,6 +1,6 @@
 /* test_polygon.c: polygons cut into triangles, beside counting by brute force: where a point lies in as many
  * triangles as the outline goes around it, the cut is right. */
-#include "meshes/orient.h"
+#include "base/orient.h"
 #include "meshes/polygon.h"
 #include "support/unit_test.h"
 

@@ -424,7 +424,7 @@ MUTANTS = [
            [patch("host/meshes/polygon.c", "            if (enters(clip, other, a, b, c)) return false;\n", "")],
            [test("test_polygon", "outlines_by_hand")]),
     Mutant("the sign of a rounded area", "meshes: three points nearly on one line, in doubles",
-           [patch("host/meshes/orient.c", "if (fabs(area) > bound * (fabs(left) + fabs(right)) + 1e-290)", "if (fabs(area) > 0)")],
+           [patch("host/base/orient.c", "if (fabs(area) > bound * (fabs(left) + fabs(right)) + 1e-290)", "if (fabs(area) > 0)")],
            [test("test_polygon", "signs_are_exact")]),
     Mutant("polygons inside out", "meshes: the plane seen from its other side",
            [patch("host/meshes/polygon.c", "count, axes[i], normal[axes[i]] < 0);", "count, axes[i], normal[axes[i]] > 0);")],

@@ -42,6 +42,40 @@ static const char *name_of(const BpParticles *p, uint16_t number) {
     return p->names.count > 0 ? p->names.text[number] : "";
 }
 
+/* Of each particle its kind, half-axes and orientation; and the faces of shapes, as polygons. */
+static void print_bodies(const BpParticles *p) {
+    printf(", \"bodies\": [");
+    for (size_t i = 0; i < p->count; i++) {
+        const BpParticleBody *const body = &p->body[i];
+        const float *const axes = body->half_axes, *const q = body->orientation;
+        const double numbers[8] = {body->kind,   (double)axes[0], (double)axes[1], (double)axes[2],
+                                   (double)q[0], (double)q[1],    (double)q[2],    (double)q[3]};
+        printf("%s", i > 0 ? ", " : "");
+        print_numbers(numbers, 8);
+    }
+    printf("], \"shapes\": [");
+    for (size_t s = 0; s < p->shape_count; s++) {
+        const BpParticleShape *const shape = &p->shapes[s];
+        printf("%s{\"kind\": \"%s\", \"type\": ", s > 0 ? ", " : "", shape->kind);
+        print_text(shape->type);
+        printf(", \"radius\": %.17g, \"capsule\": %.17g, \"rounding\": %.17g, \"vertices\": [", shape->radius,
+               shape->capsule_radius, shape->rounding);
+        for (size_t v = 0; v < shape->vertex_count; v++) {
+            printf("%s", v > 0 ? ", " : "");
+            print_numbers(shape->vertices[v], 3);
+        }
+        printf("], \"faces\": [");
+        for (size_t f = 0, c = 0; f < shape->face_count; f++) {
+            printf("%s[", f > 0 ? ", " : "");
+            for (bool first = true; c < shape->ends[f]; c++, first = false)
+                printf("%s%u", first ? "" : ", ", (unsigned)shape->corners[c]);
+            putchar(']');
+        }
+        printf("]}");
+    }
+    putchar(']');
+}
+
 /* Lists of one entry a particle, in the file's order; empty where the frame has no such thing. And the ends
  * of all bonds. */
 static void print_lists(const BpParticles *p) {
@@ -64,6 +98,7 @@ static void print_lists(const BpParticles *p) {
         }
         putchar(']');
     }
+    if (p->body != NULL) print_bodies(p);
     printf(", \"pairs\": [");
     for (size_t b = 0; b < p->bond_count; b++)
         printf("%s[%u, %u]", b > 0 ? ", " : "", (unsigned)p->bonds[b][0], (unsigned)p->bonds[b][1]);

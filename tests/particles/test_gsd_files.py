@@ -57,18 +57,78 @@ class Shapes(ValuesTest):
         self.assertEqual(self.values("a.gsd", gsd_file([first, frame(self.POINTS)]), 1)["radii"], [1.5, 0.5, 0.5])
 
     def test_other_shapes(self):
-        for shape, radius, says in [
-                ({"type": "Ellipsoid", "a": 1, "b": 2, "c": 4}, 2, "2 ellipsoids drawn as spheres"),
-                ({"type": "Ellipsoid", "a": 3, "b": 3, "c": 3}, 3, ""),
-                ({"type": "Polygon", "rounding_radius": 0.5, "vertices": [[3, 0], [0, 4], [-1, 0]]}, 4.5, "2 polygons drawn as spheres"),
-                ({"type": "ConvexPolyhedron", "vertices": [[1, 2, 2], [0, 0, 1]]}, 3, "2 polyhedrons drawn as spheres"),
-                ({"type": "Mesh", "vertices": [[2, 3, 6], [0, 0, 1]], "indices": [[0, 1, 0]]}, 7, "2 polyhedrons drawn as spheres"),
-                ({"type": "Cone"}, 0.5, "2 other shapes drawn as spheres")]:
+        """Radii, also beside diameters of particles, which shapes do not go by; and what is a sphere after all."""
+        mesh = {"type": "Mesh", "vertices": [[2, 3, 6], [0, 0, 1], [1, 0, 0]], "indices": [[0, 1, 2]]}
+        for shape, radius, kind, says in [
+                ({"type": "Ellipsoid", "a": 1, "b": 2, "c": 4}, 2, 1, ""),
+                ({"type": "Ellipsoid", "a": 3, "b": 3, "c": 3}, 3, 0, ""),
+                ({"type": "Ellipsoid", "a": 0, "b": 0, "c": 0}, 0, 0, ""),
+                ({"type": "Polygon", "rounding_radius": 0.5, "vertices": [[3, 0], [0, 4], [-1, 0]]}, 4, 2, ""),
+                ({"type": "ConvexPolyhedron", "vertices": [[1, 2, 2], [0, 0, 1], [1, 0, 0], [0, 1, 0]]}, 3, 2, ""),
+                (mesh, 7, 2, ""), ({"type": "Cone"}, 0.5, 0, "2 other shapes drawn as spheres")]:
             s = self.values("a.gsd", self.gsd({}, shape))
             self.near(s["radii"], [0.5, radius, radius])
-            self.assertEqual(s["notes"], says)
-        s = self.values("a.gsd", self.gsd({"type": "Ellipsoid", "a": 1, "b": 2, "c": 4}, {}))
-        self.assertEqual(s["notes"], "1 ellipsoid drawn as a sphere")
+            self.assertEqual((s["notes"], [body[0] for body in s.get("bodies", [[0]] * 3)]), (says, [0, kind, kind]))
+            if kind > 0:
+                s = self.values("a.gsd", self.gsd({}, shape, diameter=floats(1, 7, 8, 9)), 0, "diameter")
+                self.near(s["radii"] + s["values"], [3.5, radius, radius, 7, 8, 9])
+
+    def test_orientations(self):
+        """w, x, y, z; made of length 1, with a note where they are far from it; frame 0's, and the default."""
+        ellipsoid, tiny = {"type": "Ellipsoid", "a": 1, "b": 0.5, "c": 0.25}, math.sqrt(0.5)
+        s = self.values("a.gsd", self.gsd(ellipsoid, {}, typeid=(0, 0, 1), orientation=floats(4, tiny, 0, tiny, 0, 1, 2, 4, 10, 1, 1, 1, 1)))
+        self.near(s["bodies"][0], [1, 1, 0.5, 0.25, tiny, 0, tiny, 0])
+        self.near(s["bodies"][1], [1, 1, 0.5, 0.25, 1 / 11, 2 / 11, 4 / 11, 10 / 11])
+        self.assertEqual((s["bodies"][2], s["notes"]), ([0] * 8, "1 quaternion of another length than 1, scaled to it"))
+        s = self.values("a.gsd", self.gsd(ellipsoid, {}))
+        self.assertEqual((s["bodies"][0][4:], s["notes"]), ([1, 0, 0, 0], ""))
+        s = self.values("a.gsd", self.gsd(ellipsoid, {}, orientation=floats(4, *[0] * 4, *[1, 0, 0, 0] * 2)))
+        self.assertEqual((s["bodies"][0][4:], s["notes"]), ([1, 0, 0, 0], "1 quaternion without a direction, by which nothing is turned"))
+        s = self.values("a.gsd", self.gsd(ellipsoid, {}, orientation=floats(4, math.nan, *[0] * 3, *[1, 0, 0, 0] * 2)))
+        self.assertEqual(s["bodies"][0][4:], [1, 0, 0, 0])
+        flat = {"type": "Ellipsoid", "a": 4, "b": 0, "c": 2}
+        s = self.values("a.gsd", self.gsd({}, flat))
+        self.near(s["bodies"][1][1:4] + s["radii"][1:2], [4, 0.2, 2, 1.6 ** (1 / 3)])
+        self.assertEqual(s["notes"], "2 ellipsoids with an axis of 0, which became a twentieth of the longest")
+
+    def test_bodies(self):
+        """Corners, and faces that are counter-clockwise from outside."""
+        cube = [[x, y, z] for x in (-1, 1) for y in (-2, 2) for z in (-3, 3)]
+        s = self.values("a.gsd", self.gsd({}, {"type": "ConvexPolyhedron", "rounding_radius": 0.5,
+                                               "vertices": cube + [[0, 0, 0], [1, 0, 0], [0, 2, 0.5]]}))
+        [shape] = s["shapes"]
+        self.assertEqual((shape["kind"], shape["type"], shape["rounding"], len(shape["faces"])), ("polyhedron", "B", 0.5, 12))
+        self.near([shape["radius"], self.volume(shape)], [math.sqrt(14), 48])
+        self.assertEqual(set(sum(shape["faces"], [])), set(range(8)))
+        # A polygon that is not convex, either way around, becomes a prism a tenth as thick as wide.
+        arrow = [[3, 0], [-1, 2], [0, 0], [-1, -2]]
+        for vertices in (arrow, arrow[::-1]):
+            [shape] = self.values("a.gsd", self.gsd({}, {"type": "Polygon", "vertices": vertices}))["shapes"]
+            self.assertEqual([len(face) for face in shape["faces"]], [4, 4, 4, 4, 4, 4])
+            self.near([self.volume(shape), shape["radius"]], [6 * 0.6, 3])
+            self.near([max(v[2] for v in shape["vertices"]), min(v[2] for v in shape["vertices"])], [0.3, -0.3])
+        given = {"type": "Mesh", "vertices": cube, "indices": [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]}
+        [shape] = self.values("a.gsd", self.gsd({}, given))["shapes"]
+        self.assertEqual((shape["faces"], shape["vertices"]), (given["indices"], cube))
+        self.near([self.volume(shape)], [48])
+        # One corner that is rounded is a sphere beside the centre, and two are a capsule.
+        s = self.values("a.gsd", self.gsd({}, {"type": "ConvexPolyhedron", "rounding_radius": 0.5, "vertices": [[0, 0, 3]]}))
+        self.assertEqual((s["positions"], s["radii"], s["notes"]), ([[0, 0, 0], [4, 0, 3], [0, 5, 3]], [0.5] * 3, ""))
+        s = self.values("a.gsd", self.gsd({}, {"type": "ConvexPolyhedron", "rounding_radius": 0.5, "vertices": [[0, 0, 3], [0, 0, -1]]}))
+        self.assertEqual((s["shapes"][0]["capsule"], s["shapes"][0]["kind"], s["radii"][1]), (0.5, "spherocylinder", 3.5))
+        first = frame(self.POINTS, types=texts("A", "B"), typeid=whole(1, 0, 1, 1), type_shapes=texts("{}", json.dumps(given)))
+        self.assertEqual(self.values("a.gsd", gsd_file([first, frame(self.POINTS)]), 1)["shapes"][0]["faces"], given["indices"])
+
+    @staticmethod
+    def volume(shape):
+        """By the divergence theorem, faces cut from their first corner."""
+        total = 0
+        for face in shape["faces"]:
+            a = shape["vertices"][face[0]]
+            for b, c in zip(face[1:], face[2:]):
+                b, c = shape["vertices"][b], shape["vertices"][c]
+                total += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6
+        return total
 
     def test_unions(self):
         """Turned by a third of a circle around (1, 1, 1), x becomes y and y becomes z."""
@@ -98,21 +158,65 @@ class Shapes(ValuesTest):
                             ('{"type": "Ellipsoid", "a": 1, "b": 1}', 'no "c"'), ('{"type": "Polygon"}', 'no "vertices"'),
                             ('{"type": "Mesh", "vertices": [[1]]}', "no point at 0"), ("[" * 100000, "not JSON"),
                             ('{"type": "SphereUnion", "diameters": [1], "centers": []}', '0 "centers" and 1 "diameters"')]:
-            self.refuse("a.gsd", self.gsd({}, shape), "particles/type_shapes: shape 1", says)
+            self.refuse("a.gsd", self.gsd({}, shape), 'particles/type_shapes: shape 1 (from 0), of the type "B"', says)
+        for kind, says, members in [
+                ("Ellipsoid", 'no "b", expected a number of at least 0', {"a": 1, "b": -1, "c": 1}),
+                ("Polygon", "3 \"vertices\" on one line", {"vertices": [[0, 0], [1, 1], [2, 2]]}),
+                ("ConvexPolyhedron", "in one plane", {"vertices": [[0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1], [0.5, 0.5, 1]]}),
+                ("ConvexPolyhedron", "in one plane", {"vertices": [[0, 0, 1]]}),
+                ("ConvexPolyhedron", "in one plane", {"vertices": [[0.1 * i, 0.3 * i, 0.7 * i] for i in range(1)] * 5}),
+                ("ConvexPolyhedron", "1025 \"vertices\", expected at most 1024", {"vertices": [[i, i * i, i ** 3] for i in range(1025)]}),
+                ("ConvexPolyhedron", "farther away than 1e12", {"vertices": [[1e13, 0, 0]]}),
+                ("Mesh", 'no "indices"', {"vertices": [[0, 0, 1]]}),
+                ("Mesh", '2 "indices" at face 0', {"vertices": [[0, 0, 1]] * 3, "indices": [[0, 1]]}),
+                ("Mesh", "no vertex at corner 2 of face 0", {"vertices": [[0, 0, 1]] * 3, "indices": [[0, 1, 3]]}),
+                ("Mesh", "no vertex at corner 0 of face 0", {"vertices": [[0, 0, 1]] * 3, "indices": [[-1, 1, 2]]})]:
+            self.refuse("a.gsd", self.gsd({}, dict(members, type=kind)), 'of the type "B"', says)
 
     def test_columns_of_text_files(self):
         dump = ("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n"
                 "ITEM: ATOMS id x y z %s\n1 1 1 1 2 4 8\n2 3 3 3 6 6 6\n3 5 5 5 0 0 0\n")
-        for names in ("shapex shapey shapez", "c_shape[1] c_shape[2] c_shape[3]"):
+        unturned = "no orientations in the file, so no ellipsoid is turned"
+        for names in ("shapex shapey shapez", "c_shape[1] c_shape[2] c_shape[3]", "c_diameter[1] c_diameter[2] c_diameter[3]"):
             s = self.values("a.dump", dump % names)
-            self.near(s["radii"][:2], [2, 3])
-            self.assertEqual((s["radii"][2], s["notes"]), (None, "1 ellipsoid drawn as a sphere"))
+            self.near(s["radii"][:2], [1.0 * 2, 3])
+            self.assertEqual((s["radii"][2], s["notes"]), (None, unturned))
+            self.assertEqual(s["bodies"], [[1, 1, 2, 4, 1, 0, 0, 0], [0] * 8, [0] * 8])
         for name in ("aspherical_shape", "shape"):
             s = self.values("a.xyz", f"3\nProperties=pos:R:3:{name}:R:3\n1 1 1 1 2 4\n3 3 3 3 3 3\n5 5 5 2 2 0.25\n")
             self.near(s["radii"], [2, 3, 1])
-            self.assertEqual(s["notes"], "2 ellipsoids drawn as spheres")
-        s = self.values("a.xyz", "1\nProperties=pos:R:3:radius:R:1:shape:R:3\n1 1 1 5 1 2 4\n")
-        self.assertEqual((s["radii"], s["notes"]), ([5], "1 ellipsoid drawn as a sphere"))
+            self.assertEqual(([body[:4] for body in s["bodies"]], s["notes"]), ([[1, 1, 2, 4], [0] * 4, [1, 2, 2, 0.25]], unturned))
+        s = self.values("a.xyz", "2\nProperties=pos:R:3:radius:R:1:shape:R:3\n1 1 1 5 1 2 4\n2 2 2 5 0 0 0\n")
+        self.near(s["radii"], [2, 5])
+
+    def test_quaternions_of_text_files(self):
+        """Each format has its own order of the components: 2, 3 and 6 of 7 belong to x, y and z."""
+        dump = ("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n"
+                "ITEM: ATOMS id x y z shapex shapey shapez %s\n1 1 1 1 2 4 8 %s\n")
+        wanted = [0, 2 / 7, 3 / 7, 6 / 7]
+        wanted_w = [6 / 7, 2 / 7, 3 / 7, 0]
+        for names, words, quaternion, says in [
+                ("quatw quati quatj quatk", "0 2 3 6", wanted, ""), ("quatk quatj quatw quati", "0 3 6 2", wanted_w, ""),
+                ("c_q[1] c_q[2] c_q[3] c_q[4]", "6 2 3 0", wanted_w, "c_q[1] to [4] read as quatw, quati, quatj and quatk; "),
+                ("c_quat[1] c_quat[2] c_quat[3] c_quat[4]", "6 2 3 0", wanted_w,
+                 "c_quat[1] to [4] read as quatw, quati, quatj and quatk; "),
+                ("c_orient[1] c_orient[2] c_orient[3] c_orient[4]", "2 3 0 6", wanted_w,
+                 "c_orient[1] to [4] read as quati, quatj, quatk and quatw; ")]:
+            s = self.values("a.dump", dump % (names, words))
+            self.near(s["bodies"][0][4:], quaternion)
+            self.assertEqual(s["notes"], says + "1 quaternion of another length than 1, scaled to it")
+        s = self.values("a.xyz", "1\nProperties=pos:R:3:Aspherical_shape:R:3:orientation:R:4\n0 0 0 1 2 4 2 3 0 6\n")
+        self.near(s["bodies"][0][4:], wanted_w)
+        # Digits that were cut do not count as another length.
+        s = self.values("a.xyz", "1\nProperties=pos:R:3:Aspherical_shape:R:3:orientation:R:4\n0 0 0 1 2 4 0.577 0.577 0 0.577\n")
+        self.assertEqual(s["notes"], "")
+        self.refuse("a.dump", dump % ("quatw quati quatj quatk", "0 2 x 6"), ":10:", '"x"', "a number of a quaternion")
+        self.refuse("a.xyz", "1\nProperties=pos:R:3:Aspherical_shape:R:3:orientation:R:4\n0 0 0 1 2 4 2 3 nan 6\n", ":3:", "of a quaternion")
+        self.refuse("a.xyz", "2\nProperties=pos:R:3:Aspherical_shape:R:3\n0 0 0 1 2 4\n0 0 0 1 -2 4\n", ":4:", "particle 1 (from 0)",
+                    "a half-axis of -2, expected numbers from 0 to 1e12")
+        s = self.values("a.xyz", "1\nProperties=pos:R:3:Aspherical_shape:R:3:orientation:R:4\n0 0 0 1 2 0 0 0 0 1\n")
+        self.near(s["bodies"][0][1:4], [1, 2, 0.1])
+        self.assertEqual(s["notes"], "1 ellipsoid with an axis of 0, which became a twentieth of the longest")
 
 
 class Boxes(ValuesTest):

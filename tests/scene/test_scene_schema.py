@@ -55,7 +55,7 @@ GOOD = {
     "clouds": [{"file": "a.ply", "radius": 1, "material": "a", "materials": ["a", "b"]}],
     "particles": [{"file": "a.gsd", "frame": -1, "style": "ball-and-stick", "radius": {"by": "vdw", "scale": 0.5},
                    "color": {"column": "mass", "map": "cividis", "range": [0, 1]}, "bonds": {"radius": 0.1},
-                   "box": True, "solvent": True, "whole": False, "material": "a"},
+                   "box": True, "solvent": True, "whole": False, "shapes": False, "material": "a"},
                   {"file": "b.pdb", "radius": "covalent", "color": "chain"},
                   {"file": "b.pdb", "radius": {"types": {"A": 1}}, "color": {"types": {"A": [1, 0, 0]}}},
                   {"file": "b.pdb", "select": "chain == A", "radius": {"value": "2 * radius"},
