@@ -1,7 +1,7 @@
 /* scene_particles.h: the particles of a scene document.
  *
- * In:    the node of "particles".   Out: the particles of the files that it names, as spheres.
- * Knows: the members of an entry, where relative paths begin. Does not know: how formats are read
+ * In:    the node of "particles".   Out: the particles of the files that it names, as spheres, triangles and
+ * capsules. Knows: the members of an entry, where relative paths begin. Does not know: how formats are read
  * (particles/file.c). */
 #ifndef BP_FORMATS_SCENE_PARTICLES_H
 #define BP_FORMATS_SCENE_PARTICLES_H

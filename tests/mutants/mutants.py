@@ -47,6 +47,16 @@ def select(name):
     return Lister("particle_select", "tests/particles/test_select.py", (name,), "1 exact")
 
 
+def shape_scenes(*names):
+    """Tests of tests/particles/test_shape_scenes.py."""
+    return Script("tests/particles/test_shape_scenes.py", tuple(f"Shapes.test_{name}" for name in names), "1 exact")
+
+
+def shape_files(name):
+    """A test of tests/particles/test_gsd_files.py."""
+    return Lister("particle_summary", "tests/particles/test_gsd_files.py", (f"Shapes.test_{name}",), "1 exact")
+
+
 def words(*names):
     """Tests of tests/scene/test_word_lists.py."""
     return Script("tests/scene/test_word_lists.py", tuple(f"Words.test_{name}" for name in names), "1 exact")
@@ -2166,4 +2176,50 @@ MUTANTS = [
     Mutant("the camera on a triangle", "triangles: a lookfrom that lies on one is not seen",
            [patch("host/scene/triangle_rules.c", "if (bp_dot(part, area) < -ON_CAMERA * whole) return false;", "if (bp_dot(part, area) < whole) return false;")],
            [triangles("refusals")]),
+    # ---- particles that are no spheres ----------------------------------------------------------------------
+    Mutant("quaternions turned back", "classic: a rotation and its inverse",
+           [patch("host/particles/quaternion.c", "rows[i][k] = 2 * (q[1 + i] * q[1 + k] - q[0] * q[1 + l]);",
+                  "rows[i][k] = 2 * (q[1 + i] * q[1 + k] + q[0] * q[1 + l]);"),
+            patch("host/particles/quaternion.c", "rows[i][l] = 2 * (q[1 + i] * q[1 + l] + q[0] * q[1 + k]);",
+                  "rows[i][l] = 2 * (q[1 + i] * q[1 + l] - q[0] * q[1 + k]);")],
+           [test("test_bodies", "ellipsoids_are_what_they_should_be")]),
+    Mutant("OVITO's quaternions with the scalar first", "particles: the order of components in extended XYZ",
+           [patch("host/particles/read_xyz.c", "&particle.orientation[(i + 1) % 4])", "&particle.orientation[i])")],
+           [shape_files("quaternions_of_text_files")]),
+    Mutant("diameters read as half-axes", "particles: LAMMPS's shapes are diameters",
+           [patch("host/particles/read_dump.c", "        particle->half_axes[i] /= 2;\n", "")], [shape_files("columns_of_text_files")]),
+    Mutant("normals stretched as the ellipsoid is", "classic: normals by the matrix instead of its inverse",
+           [patch("host/particles/style_bodies.c", "normal[c] = vertices[v][c] / (double)axes[c];", "normal[c] = vertices[v][c] * (double)axes[c];")],
+           [test("test_bodies", "ellipsoids_are_what_they_should_be")]),
+    Mutant("a mesh inside its sphere", "particles: corners on the sphere, so the volume is too small",
+           [patch("host/particles/geodesic.c", "const double factor = cbrt(4 * PI / 3 / volume);", "const double factor = 1;\n    (void)volume;")],
+           [test("test_bodies", "spheres_of_all_finenesses")]),
+    Mutant("rows inside a face that overlap", "particles: the places of corners in a triangle",
+           [patch("host/particles/geodesic.c", "(j - 1) * (parts - 2) - (j - 1) * (j - 2) / 2;", "(j - 1) * (parts - 3) - (j - 1) * (j - 2) / 2;")],
+           [test("test_bodies", "spheres_of_all_finenesses")]),
+    Mutant("the side of a plane by doubles", "particles: hulls without exact signs",
+           [patch("host/base/orient.c", "if (fabs(volume) > bound * size + 1e-240)", "if (fabs(volume) > 0)")],
+           [test("test_bodies", "sides_are_exact")]),
+    Mutant("a hull of four points", "particles: the points behind the first four",
+           [patch("host/particles/convex_hull.c", "for (uint32_t i = 0; i < (uint32_t)point_count; i++) add_point(&hull, i, above);",
+                  "for (uint32_t i = 0; i < 4; i++) add_point(&hull, i, above);")], [test("test_bodies", "hulls_hold_all_points")]),
+    Mutant("a hull that begins inside out", "particles: the first four points in their order",
+           [patch("host/particles/convex_hull.c", "first[up ? 2 : 1], c = first[up ? 1 : 2]", "first[1], c = first[2]")],
+           [test("test_bodies", "hulls_hold_all_points")]),
+    Mutant("clockwise polygons inside out", "particles: a polygon's corners as the file has them",
+           [patch("host/particles/gsd_shapes.c", "put_corner(body, count + (area > 0 ? i : count - 1 - i));", "put_corner(body, count + i);")],
+           [shape_files("bodies")]),
+    Mutant("ellipsoids as large as in the file", "particles: a style's radius is passed over",
+           [patch("host/particles/style_shapes.c", "return bp_style_radius(job, i) / own;", "return own / own;")], [shape_scenes("radii_scale")]),
+    Mutant("all ellipsoids as fine", "particles: memory by their number",
+           [patch("host/particles/style_bodies.c", "if (wanted >= GEODESIC_PARTS_MAX) return", "if (wanted > 0) return")],
+           [shape_scenes("many_are_coarser")]),
+    Mutant("glass on an open shape", "particles: the closedness of a type's mesh",
+           [patch("host/particles/style_bodies.c", "if (inside && !shape->closed)", "if (inside && shape == NULL)")], [shape_scenes("materials")]),
+    Mutant("a camera that looks at spheres alone", "particles: triangles of particles are left out of the fit",
+           [patch("host/formats/scene_fit.c", "if (!all) bp_scene_particle_triangles(scene, &from, &to);", "if (!all) from = to;")],
+           [shape_scenes("cameras_and_catchers")]),
+    Mutant("a ground that spheres alone stand on", "particles: triangles of particles above a shadow catcher",
+           [patch("host/scene/shadow_catcher.c", "!scene->mesh_files[mesh].in_memory &&\n           !scene->mesh_files[mesh].of_particles)",
+                  "!scene->mesh_files[mesh].in_memory)")], [shape_scenes("cameras_and_catchers")]),
 ]
