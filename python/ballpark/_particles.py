@@ -136,7 +136,8 @@ def _gsd_diameters(particles: typing.Any) -> npt.NDArray[typing.Any]:
     is_other = np.array([bool(shape) and shape.get("type") != "Sphere" for shape in shapes])
     others = int(np.count_nonzero(is_other[types[known]]))
     if others > 0:
-        warn(f"ballpark: from_gsd: particles of other shapes drawn as spheres: {others:,} of {len(types):,}")
+        warn(f"ballpark: from_gsd: particles of other shapes drawn as spheres: {others:,} of {len(types):,}; "
+             "render the file by its name to see the shapes")
     own = np.full(len(types), np.nan)
     own[known] = of_types[types[known]]
     return np.where(np.isnan(own), diameters, own)

@@ -5,6 +5,7 @@
  * What is accepted is whole: arrays of one length, finite places, names and bonds that exist, and neighbours
  * are found whatever the cell. Frames are read
  * one after the other, passed over, and asked for by number, and each way finds as many. */
+#include "formats/particle_shapes.h"
 #include "fuzz.h"
 #include "particles/elements.h"
 #include "particles/molecules.h"
@@ -32,6 +33,36 @@ static void check_particles(const BpParticles *p) {
         require(p->bonds[b][0] < p->count && p->bonds[b][1] < p->count);
     for (int i = 0; i < 3 && p->has_cell; i++)
         for (int c = 0; c < 3; c++) require(isfinite(p->cell[i][c]) && isfinite(p->cell_origin[c]));
+}
+
+/* Bodies have a kind that exists, axes and a unit quaternion; faces have corners that exist, and are cut or
+ * refused. */
+static void check_bodies(BpParticles *p) {
+    BpError err = {0};
+    for (size_t i = 0; i < p->count && p->body != NULL; i++) {
+        const BpParticleBody *const body = &p->body[i];
+        double square = 0;
+        require(body->kind < BP_BODY_SHAPES + p->shape_count);
+        if (body->kind == BP_BODY_SPHERE) continue;
+        for (int k = 0; k < 4; k++) square += (double)body->orientation[k] * (double)body->orientation[k];
+        require(square > 0.999 && square < 1.001 && p->radius != NULL && isfinite(p->radius[i]));
+        for (int k = 0; k < 3 && body->kind == BP_BODY_ELLIPSOID; k++)
+            require(body->half_axes[k] > 0 && body->half_axes[k] <= 1e12f);
+    }
+    for (size_t s = 0; s < p->shape_count; s++) {
+        const BpParticleShape *const shape = &p->shapes[s];
+        require(isfinite(shape->radius) && shape->type != NULL);
+        for (size_t f = 0, c = 0; f < shape->face_count; f++) {
+            require(shape->ends[f] >= c + 3);
+            for (; c < shape->ends[f]; c++) require(shape->corners[c] < shape->vertex_count);
+        }
+    }
+    const BpStatus status = bp_cut_particle_shapes(p, &err);
+    require(status == BP_OK || status == BP_ERR_SCENE);
+    for (size_t s = 0; s < p->shape_count && status == BP_OK; s++)
+        for (size_t t = 0; t < p->shapes[s].triangle_count; t++)
+            for (int k = 0; k < 3; k++) require(p->shapes[s].triangles[t][k] < p->shapes[s].vertex_count);
+    bp_error_clear(&err);
 }
 
 /* What looks for neighbours takes any cell, and what it finds exists. */
@@ -80,6 +111,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     while (status == BP_OK && !end && found < FRAMES_MAX) {
         status = bp_particle_file_next(particles_file, &particles, &end, &err);
         if (status == BP_OK && !end) check_particles(&particles);
+        if (status == BP_OK && !end) check_bodies(&particles);
         if (status == BP_OK && !end) check_neighbours(&particles);
         found += status == BP_OK && !end;
     }

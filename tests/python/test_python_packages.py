@@ -4,6 +4,7 @@ takes its place. Radii and colours are those of files of particles.
 Usage: test_python_packages.py SOURCE_DIR BUILD_DIR
 """
 
+import json
 import pathlib
 import sys
 import tempfile
@@ -140,7 +141,12 @@ def test_gsd_shapes(folder):
             warnings.simplefilter("ignore")
             spheres = ballpark.from_gsd(file[0])
         assert np.allclose(spheres.radius, [0.25, 0.5, 0.25]) and np.array_equal(spheres.positions, real.particles.position)
-        same_picture(spheres, folder / "shapes.gsd")
+        with_shapes = ballpark.Scene.load(folder / "shapes.gsd")
+        assert (with_shapes.spheres, with_shapes.triangles) == (2, 11520)
+        document = {"camera": {"image_width": 800, "aspect_ratio": [4, 3], "vfov": 30, "fit": "particles"}, "lighting": "soft",
+                    "backdrop": [1, 1, 1], "particles": [{"file": "shapes.gsd", "shapes": False}]}
+        (folder / "spheres.json").write_text(json.dumps(document))
+        same_picture(spheres, folder / "spheres.json")
 
 
 def test_values_of_ase(folder):
