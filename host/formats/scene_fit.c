@@ -22,8 +22,16 @@ void bp_scene_view(BpScene *scene, double direction[3]) {
         bp_view_direction(camera->view, up, direction);
 }
 
-/* Spheres that move once more, where they end, the vertices of triangles as points, and the ends of capsules.
- */
+static bool is_corner(const BpTriangle *triangle, const double vertex[3]) {
+    for (int k = 0; k < 3; k++) {
+        const double *const own = triangle->vertices[k];
+        if (own[0] == vertex[0] && own[1] == vertex[1] && own[2] == vertex[2]) return true;
+    }
+    return false;
+}
+
+/* Spheres that move once more, where they end, the vertices of triangles as points, but for those that the
+ * triangle before has too, and the ends of capsules. */
 static BpStatus copy_balls(const BpScene *scene, bool all, size_t first, BpSphere **made, size_t *count,
                            BpError *err) {
     size_t from = 0, to = scene->triangle_count;
@@ -38,14 +46,19 @@ static BpStatus copy_balls(const BpScene *scene, bool all, size_t first, BpSpher
         *next = scene->spheres[i];
         memcpy(next->center, scene->center_ends[i], sizeof next->center);
     }
-    for (size_t i = 0; i < vertices; i++, next++) {
+    for (size_t i = 0; i < vertices; i++) {
+        const BpTriangle *const triangle = &scene->triangles[from + i / 3];
+        const double *const vertex = triangle->vertices[i % 3];
+        if (i >= 3 && is_corner(triangle - 1, vertex)) continue;
         *next = (BpSphere){.radius = 0};
-        memcpy(next->center, scene->triangles[from + i / 3].vertices[i % 3], sizeof next->center);
+        memcpy(next->center, vertex, sizeof next->center);
+        next++;
     }
     for (size_t i = 2 * bonds; i < 2 * scene->capsule_count; i++, next++) {
         *next = (BpSphere){.radius = scene->capsules[i / 2].radius};
         memcpy(next->center, scene->capsules[i / 2].ends[i % 2], sizeof next->center);
     }
+    *count = (size_t)(next - *made);
     return BP_OK;
 }
 

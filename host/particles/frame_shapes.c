@@ -87,6 +87,7 @@ BpStatus frame_add_body(BpParticleFile *file, Particle *particle, bool with_line
     if (is_ellipsoid(particle->half_axes)) {
         BP_TRY(put_ellipsoid(file, particle->half_axes, particle->orientation, with_line, file->added - 1,
                              &body, &particle->radius, err));
+        file->shapes.super += particle->super;
     } else if (particle->body != BP_BODY_SPHERE) {
         body.kind = particle->body;
         put_orientation(file, particle->orientation, &body);
@@ -123,6 +124,10 @@ void frame_note_shapes(BpParticleFile *file, uint64_t count, const char *kind) {
 void frame_end_shapes(BpParticleFile *file) {
     BpParticles *const p = file->out;
     char number[32];
+    if (p != NULL && file->shapes.super > 0)
+        bp_particles_note(
+            p, "%s superellipsoid%s taken for %s", bp_format_whole(file->shapes.super, number, sizeof number),
+            bp_plural(file->shapes.super), file->shapes.super == 1 ? "an ellipsoid" : "ellipsoids");
     if (file->shapes.bodies == 0) return;
     if (!file->shapes.has_orientations) {
         bp_particles_note(p, "no orientations in the file, so no ellipsoid is turned");

@@ -554,6 +554,12 @@ static BpStatus take_ellipsoid(BpParticleFile *file, Data *data, char **words, s
     BP_TRY(find_place(&file->input, data, words[0], &at, err));
     for (int i = 0; i < 3; i++) axes[i] /= 2;
     file->shapes.has_orientations = true;
+    bool super = false;
+    for (size_t i = 8; i < 10 && i < count; i++) { /* a superellipsoid's exponents */
+        double exponent = 0;
+        super |= word_number(words[i], &exponent) && exponent != 2;
+    }
+    file->shapes.super += super;
     return frame_set_ellipsoid(file, at, axes, orientation, err);
 }
 

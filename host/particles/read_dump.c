@@ -21,6 +21,7 @@ typedef struct Dump {
         molecule;        /* places of columns; -1: nowhere */
     size_t known_masses; /* those of elements, in this frame */
     bool united;         /* some stand for a carbon and its hydrogens */
+    int block[2];        /* the columns of a superellipsoid's exponents; below 0: none */
     int quaternion[4];   /* the columns of w, x, y, z; the first below 0: there are none */
     const char *order;   /* how those are read that do not say which they are; NULL: they do */
 } Dump;
@@ -140,6 +141,8 @@ static BpStatus take_columns(Input *input, const char *text, Dump *dump, BpError
     dump->molecule = column_named(dump, "mol");
     find_shape(dump);
     find_quaternion(dump);
+    dump->block[0] = column_named(dump, "block1");
+    dump->block[1] = column_named(dump, "block2");
     for (int s = 0; s < 4; s++) {
         for (int i = 0; i < 3; i++) dump->position[i] = column_named(dump, sets[s][i]);
         if (dump->position[0] < 0 || dump->position[1] < 0 || dump->position[2] < 0) continue;
@@ -169,6 +172,11 @@ static BpStatus take_shape(const Input *input, const Dump *dump, char *const *wo
         if (!word_number(words[dump->shape[i]], &particle->half_axes[i]))
             return input_wrong(input, words[dump->shape[i]], "a diameter", err);
         particle->half_axes[i] /= 2;
+    }
+    for (int i = 0; i < 2; i++) {
+        double exponent = 0;
+        if (dump->block[i] < 0) continue;
+        particle->super |= word_number(words[dump->block[i]], &exponent) && exponent != 2;
     }
     for (int i = 0; i < 4 && dump->quaternion[0] >= 0; i++)
         if (!word_number(words[dump->quaternion[i]], &particle->orientation[i]))

@@ -24,6 +24,7 @@ typedef enum Role {
     NUMBER,
     SHAPE,
     ORIENTATION,
+    ROUNDNESS,
     ATOM_NAME,
     RESIDUE,
     OTHER
@@ -83,7 +84,8 @@ static Role role_of(const char *name, char type, int64_t count) {
                  {"residuenames", RESIDUE, "S", 1},
                  {"aspherical_shape", SHAPE, "R", 3},
                  {"shape", SHAPE, "R", 3},
-                 {"orientation", ORIENTATION, "R", 4}}; /* x, y, z, w, as OVITO has it */
+                 {"orientation", ORIENTATION, "R", 4},           /* x, y, z, w, as OVITO has it */
+                 {"superquadric_roundness", ROUNDNESS, "R", 2}}; /* 1 and 1 of ellipsoids */
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (strcasecmp(name, known[i].name) == 0 && strchr(known[i].types, type) != NULL &&
             count == known[i].count)
@@ -324,6 +326,8 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
         for (size_t i = 0; role == ORIENTATION && i < 4; i++)
             if (!word_number(words[w + i], &particle.orientation[(i + 1) % 4]))
                 return input_wrong(input, words[w + i], "a finite number: x, y, z or w of a quaternion", err);
+        for (size_t i = 0; role == ROUNDNESS && i < 2; i++)
+            particle.super |= word_number(words[w + i], &value) && value > 0 && value != 1;
         if (role == SPECIES) {
             particle.element = bp_element_of_species(words[w]);
             particle.type = words[w];

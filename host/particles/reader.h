@@ -39,6 +39,7 @@ struct BpParticleFile {
     struct {
         uint64_t bodies;          /* in this frame: ellipsoids, and what has another shape */
         uint64_t flat;            /* ellipsoids with an axis of 0 */
+        uint64_t super;           /* superellipsoids, which are nearer to boxes or stars */
         uint64_t scaled, without; /* quaternions whose length is not 1, or that have no direction */
         bool has_orientations;    /* set by the reader after frame_begin */
         const char *order;        /* set by the reader: how it read those that do not say it; NULL: they do */
@@ -60,6 +61,7 @@ typedef struct Particle {
     double half_axes[3];   /* of an ellipsoid, which has no other radius; all 0: it is none */
     double orientation[4]; /* w, x, y, z, of any length */
     uint32_t body;         /* BP_BODY_SPHERE, or BP_BODY_SHAPES and more: a shape of out->shapes */
+    bool super;            /* the ellipsoid is a superellipsoid */
 } Particle;
 
 #define PARTICLE_NONE                                                                                        \

@@ -207,6 +207,9 @@ class Shapes(ValuesTest):
             self.assertEqual(s["notes"], says + "1 quaternion of another length than 1, scaled to it")
         s = self.values("a.xyz", "1\nProperties=pos:R:3:Aspherical_shape:R:3:orientation:R:4\n0 0 0 1 2 4 2 3 0 6\n")
         self.near(s["bodies"][0][4:], wanted_w)
+        for name, content in (("a.dump", dump % ("quatw quati quatj quatk block1 block2", "1 0 0 0 2 8")),
+                              ("a.xyz", "1\nProperties=pos:R:3:shape:R:3:orientation:R:4:superquadric_roundness:R:2\n0 0 0 1 2 4 0 0 0 1 1 0.5\n")):
+            self.assertEqual(self.values(name, content)["notes"], "1 superellipsoid taken for an ellipsoid")
         # Digits that were cut do not count as another length.
         s = self.values("a.xyz", "1\nProperties=pos:R:3:Aspherical_shape:R:3:orientation:R:4\n0 0 0 1 2 4 0.577 0.577 0 0.577\n")
         self.assertEqual(s["notes"], "")

@@ -240,6 +240,9 @@ class Written(LammpsTest):
         s = self.values("a.data", SHAPED.replace("Atoms", "Atoms # ellipsoid"))
         self.assertEqual((s["notes"], s["radii"][1]), ("", None))
         self.assertEqual(s["bodies"], [[1, 0.5, 0.5, 13.5, 1, 0, 0, 0], [0] * 8, [1, 0.5, 1, 2, 1, 0, 0, 0]])
+        powers = SHAPED.replace("Atoms", "Atoms # ellipsoid").replace("4 1 1 27 1 0 0 0", "4 1 1 27 1 0 0 0 2 %s")
+        for power, notes in ((2, ""), (4, "1 superellipsoid taken for an ellipsoid")):
+            self.assertEqual(self.values("a.data", powers % power)["notes"], notes)
         for radius, axes in ((s["radii"][0], (0.5, 0.5, 13.5)), (s["radii"][2], (0.5, 1, 2))):
             self.assertAlmostEqual(4 / 3 * math.pi * radius ** 3, 4 / 3 * math.pi * math.prod(axes), 4)
         for kind, style, atom, section in [("1 lines", "line", "1 1 1 1 1 1 2 3", "Lines\n\n1 1 0 2 0"),
