@@ -45,6 +45,45 @@ static void say_unmatched(BpStyleJob *job, const char *member, const BpStyleName
     }
 }
 
+/* What the file calls a particle. */
+static const char *own_name(const BpParticles *p, const BpParticleTag *tag) {
+    return bp_style_name(p, tag->type != 0 ? tag->type : tag->name);
+}
+
+/* Where radii or colours are those of elements, particles without one get radius and colour of none: says how
+ * many are shown, and the names of the first. */
+static void say_unknown(BpStyleJob *job) {
+    enum { NAMES_MAX = 3 };
+    const BpParticles *const p = job->p;
+    const BpParticleStyle *const style = job->style;
+    const bool radii = job->radius_by == BP_RADIUS_VDW || job->radius_by == BP_RADIUS_COVALENT;
+    const bool colors = job->color_by == BP_COLOR_ELEMENT;
+    const char *names[NAMES_MAX + 1];
+    char list[160] = "", number[32], shown[40];
+    size_t count = 0, named = 0;
+    for (size_t i = 0; i < p->count && (radii || colors); i++) {
+        const BpParticleTag *const tag = &p->tag[i];
+        if (!job->shown[i] || tag->element != 0) continue;
+        if ((!radii || bp_style_named(style->radii, style->radius_count, p, tag) != NULL) &&
+            (!colors || bp_style_named(style->colors, style->color_count, p, tag) != NULL))
+            continue;
+        count++;
+        const char *const name = own_name(p, tag);
+        size_t n = 0;
+        while (n < named && strcmp(names[n], name) != 0) n++;
+        if (n == named && named <= NAMES_MAX && name[0] != '\0') names[named++] = name;
+    }
+    for (size_t n = 0; n < named; n++) {
+        const size_t used = strlen(list);
+        bp_printable(names[n], shown, sizeof shown);
+        snprintf(list + used, sizeof list - used, "%s%s", n > 0 ? ", " : " (", n < NAMES_MAX ? shown : "...");
+    }
+    if (count > 0)
+        bp_style_say(job, "no element is known of %s particle%s%s%s",
+                     bp_format_whole(count, number, sizeof number), bp_plural(count), list,
+                     named > 0 ? ")" : "");
+}
+
 static BpStatus run(BpStyleJob *job, BpError *err) {
     BpParticles *const p = job->p;
     char all[32], shown[32];
@@ -69,6 +108,7 @@ static BpStatus run(BpStyleJob *job, BpError *err) {
     find_flat(job);
     BP_TRY(bp_style_choose_radii(job, err));
     BP_TRY(bp_style_choose_colors(job, err));
+    say_unknown(job);
     say_unmatched(job, "radius", job->style->radii, job->style->radius_count);
     say_unmatched(job, "color", job->style->colors, job->style->color_count);
     BP_TRY(bp_style_put_particles(job, err));

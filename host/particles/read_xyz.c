@@ -40,8 +40,8 @@ typedef struct Layout {
     const char *columns[BP_PARTICLE_COLUMNS_MAX];
     int column_word[BP_PARTICLE_COLUMNS_MAX];
     size_t column_count;
-    bool extended, whole_colors;                       /* whole_colors: they are of type I */
-    bool number_seen[BP_ELEMENT_MAX + 1], symbol_seen; /* among the species */
+    bool extended, whole_colors; /* whole_colors: they are of type I */
+    bool number_seen[BP_ELEMENT_MAX + 1], symbol_seen, name_seen; /* among the species */
 } Layout;
 
 static void add_column(Layout *layout, const char *name, const char *suffix, int word) {
@@ -253,6 +253,15 @@ static BpStatus begin_frame(BpParticleFile *file, const char *comment, Layout *l
     return parse_cell(file, comment, layout->extended, value, err);
 }
 
+/* Whether a species is no symbol, but the name of an atom as in PDB: CB, OG1, HW2. */
+static bool is_atom_name(const char *species) {
+    if (strcmp(species, "OH2") == 0) return true;
+    return strchr("CHNOS", species[0]) != NULL && species[0] != '\0' && species[1] != '\0' &&
+           strchr("ABDEGWXZ", species[1]) != NULL &&
+           species[strspn(species, "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789'*")] == '\0' &&
+           bp_element_of_species(species) == 0;
+}
+
 /* Splits an atom's line. In extended XYZ, texts with blanks stand in quotes; but names of atoms have quotes
  * of their own (O5', H5''), so these count only where the words are too many otherwise. */
 static size_t split_atom(char *line, const Layout *layout, char **words) {
@@ -336,6 +345,7 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
             const bool is_number = word_whole(words[w], &whole) && whole > 0 && whole <= BP_ELEMENT_MAX;
             layout->number_seen[is_number ? whole : 0] = true;
             layout->symbol_seen |= !is_number;
+            layout->name_seen |= particle.element == 0 && is_atom_name(words[w]);
         }
         if (role == TYPE && particle.type == NULL) {
             particle.type = words[w];
@@ -417,6 +427,29 @@ static void note_numbers(BpParticleFile *file, const Layout *layout) {
                       highest);
 }
 
+/* Some programs, such as VMD, write the names of atoms as species. Where one of them is no symbol, CA is no
+ * calcium either. */
+static BpStatus take_names(BpParticles *p, const Layout *layout, BpError *err) {
+    enum { UNASKED = UINT8_MAX };
+    if (p == NULL || !layout->name_seen) return BP_OK;
+    uint8_t *const element = malloc(p->names.count + 1);
+    if (element == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the elements of names");
+    memset(element, UNASKED, p->names.count);
+    for (size_t i = 0; i < p->count; i++) {
+        BpParticleTag *const tag = &p->tag[i];
+        bool dummy = false;
+        if (element[tag->type] == UNASKED || tag->residue != 0)
+            element[tag->type] =
+                bp_element_of_name(p->names.text[tag->type], p->names.text[tag->residue], false, &dummy);
+        tag->element = element[tag->type];
+        if (tag->element != 0) tag->flags |= BP_PARTICLE_ELEMENT_GUESSED;
+    }
+    free(element);
+    p->element_guessed = true;
+    bp_particles_note(p, "elements from atom names");
+    return BP_OK;
+}
+
 /* Behind the last atom there is nothing, or the number of atoms of another frame, or text of other programs,
  * as the frequencies and names of the data set QM9; but no further atom. */
 static BpStatus check_behind(BpParticleFile *file, const Layout *layout, BpError *err) {
@@ -448,6 +481,7 @@ BpStatus read_xyz(BpParticleFile *file, bool *end, BpError *err) {
     for (uint64_t i = 0; i < count && status == BP_OK; i++) status = take_atom(file, layout, i, count, err);
     if (status == BP_OK) status = check_behind(file, layout, err);
     if (status == BP_OK) note_numbers(file, layout);
+    if (status == BP_OK) status = take_names(file->out, layout, err);
     free(value);
     free(layout);
     return status;

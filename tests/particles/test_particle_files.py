@@ -284,6 +284,23 @@ class Formats(FileTest):
         self.assertEqual(s["notes"], "")
         self.assertEqual((list(s["elements"]), s["first"]["type"]), (["C"], "C"))
 
+    def test_names_of_atoms_as_species(self):
+        """As VMD writes them: one that is no symbol tells, and then CA is no calcium; but no symbol is taken for a name."""
+        def read(*species, extended=""):
+            return self.of("a.xyz", f"{len(species)}\n{extended}\n" + "".join(f"{word} 0 0 {z}\n" for z, word in enumerate(species)))
+        for species, elements in [("N CA C O CB", {"N": 1, "C": 3, "O": 1}), ("HA CA", {"H": 1, "C": 1}), ("OH2 H1 H2 CL", {"O": 1, "H": 2, "Cl": 1}),
+                                  ("CA OG1 HD11 Zn", {"C": 1, "O": 1, "H": 1, "Zn": 1}), ("CZ 7 Q", {"C": 1, "": 2})]:
+            s = read(*species.split())
+            self.assertEqual((s["elements"], s["notes"]), (elements, "elements from atom names"), species)
+            s = read(*species.split(), extended="Properties=species:S:1:pos:R:3")
+            self.assertEqual(s["elements"], elements)
+        for species, elements in [("CA CA", {"Ca": 2}), ("CA CL NA FE", {"Ca": 1, "Cl": 1, "Na": 1, "Fe": 1}), ("A B", {"": 1, "B": 1}), ("Ca Xx Bq CH3 Cb", {"Ca": 1, "": 4}),
+                                  ("SG CD NE", {"Sg": 1, "Cd": 1, "Ne": 1})]:
+            s = read(*species.split())
+            self.assertEqual((s["elements"], s["notes"]), (elements, ""), species)
+        s = self.of("a.xyz", "2\nProperties=species:S:1:pos:R:3:resname:S:1\nCA 0 0 0 CA\nCB 5 0 0 ALA\n")
+        self.assertEqual(s["elements"], {"Ca": 1, "C": 1})
+
     def test_extended_xyz(self):
         s = self.of("a.xyz", EXTENDED, 0, "force_y")
         self.assertEqual((s["count"], s["elements"], s["periodic"]), (2, {"C": 1, "Fe": 1}, [True, True, False]))

@@ -308,6 +308,23 @@ class Scenes(ProgramTest):
         self.write("c.csv", "x,y,z,red,green,blue,heat\n0,0,0,1,0,0,1\n")
         self.assertNotIn("grey", self.notes("c.csv") + self.notes("c.csv", *by_heat))
 
+    def test_unknown_elements_are_said(self):
+        """Where radii or colours are those of elements; not where the user or the file gives them."""
+        self.write("a.xyz", "6\n\nC 0 0 0\nQ 1 0 0\nQ 2 0 0\nJ 3 0 0\nJo 4 0 0\nL 5 0 0\n")
+        says = "no element is known of 5 particles (Q, J, Jo, ...)"
+        for arguments in ((), ('particles[0].radius=1',), ('particles[0].color=[1,1,1]',), ('particles[0].radius={"types":{"Q":1}}',)):
+            self.assertIn(says + "\n", self.notes("a.xyz", "--wide", *sum((["--set", one] for one in arguments), [])))
+        for q in ("Q", "J"):
+            both = [f"particles[0].{member}=" + '{"types":{"%s":%s}}' % (q, value) for member, value in (("radius", 1), ("color", [1, 0, 0]))]
+            count = {"Q": "3 particles (J, Jo, L)", "J": "4 particles (Q, Jo, L)"}[q]
+            self.assertIn(f"no element is known of {count}\n", self.notes("a.xyz", "--wide", "--set", both[0], "--set", both[1]))
+        for arguments in (("--set", "particles[0].radius=1", "--set", "particles[0].color=type"), ("--select", "element == C")):
+            self.assertNotIn("no element", self.notes("a.xyz", "--wide", *arguments))
+        self.write("b.pdb", pdb_line(1, " C1 ", "LIG", (0, 0, 0), "C") + pdb_line(2, " Q1 ", "LIG", (1.5, 0, 0), "X"))
+        self.assertIn("no element is known of 1 particle (Q1)\n", self.notes("b.pdb", "--wide"))
+        self.write("c.xyz", "2\n\nQ 0 0 0\nJ 1 0 0\n")
+        self.assertNotIn("no element", self.notes("c.xyz"))
+
     def test_kinds_keep_their_colours(self):
         """The order in a frame does not matter, and 10 comes after 2."""
         kinds = ["A", "B", "10", "2"]
