@@ -44,6 +44,17 @@ static bool lacks_place(const char *line) {
            (isnan(place[0]) || isnan(place[1]) || isnan(place[2]));
 }
 
+/* Whether the digits of the last coordinate go on in the field behind it: then a number before was too long,
+ * and moved all that follow. Digits of a velocity may touch, of which up to three stand
+ * before its point. */
+static bool goes_on(const char *line, size_t width) {
+    static const char digits[] = "0123456789";
+    const size_t end = POSITIONS - 1 + 3 * width;
+    if (strlen(line) <= end || strchr(digits, line[end - 1]) == NULL) return false;
+    const size_t more = strspn(line + end, digits);
+    return more > 0 && (line[end + more] != '.' || more > 3);
+}
+
 /* Velocities have one digit more behind the point in fields of the same width; programs of other authors make
  * them wider. */
 static void take_velocities(const char *line, Frame *frame, double values[3]) {
@@ -63,6 +74,9 @@ static BpStatus take_atom(BpParticleFile *file, const char *line, Frame *frame, 
     double values[4] = {NAN, NAN, NAN, NAN};
     Particle particle = PARTICLE_NONE;
     const size_t good = take_fields(line, POSITIONS, frame->width, particle.position);
+    if (good == 3 && goes_on(line, frame->width))
+        return input_wrong(&file->input, line + POSITIONS - 1, "coordinates that fit into their columns",
+                           err);
     if (good < 3) {
         char found[32];
         fixed_text(line, length, POSITIONS + good * frame->width, POSITIONS + (good + 1) * frame->width - 1,

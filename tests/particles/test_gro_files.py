@@ -120,6 +120,14 @@ class Gro(listed.ListTest):
         good = frame(3, ROWS[:1])
         self.refuse("a.gro", good.replace("   0.250", "  0.2500"), ":3:", "points at equal distances")
         self.refuse("a.gro", frame(3, ROWS).replace("  20.500", " 2 0.500"), ":4:", "2 0.500")
+        # A number too long for its columns moves all behind it, at unchanged distances of the points.
+        for precision in (2, 3, 5):
+            wide = ((-1234.5, 1234.25, 9999.75), (99.5, -999.25, 1.0))
+            for row in (wide, (wide[0], None), (wide[0], wide[1][::-1]), ((12345.5, 1.0, 2.0), ROWS[0][1]), ((1.0, 12345.5, 2.0), None)):
+                for before in ([], ROWS[:1]):
+                    self.refuse("a.gro", frame(precision, before + [row]), f":{3 + len(before)}:")
+            touching = [((1234.5, 1234.25, 9999.75), (999.25, 999.5, -99.5))]
+            self.check(self.of("a.gro", frame(precision, touching), 0, "vx", "vz"), touching, (0, 2))
 
 
 class Independent(listed.ListTest):
