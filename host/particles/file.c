@@ -10,6 +10,7 @@
 #include <locale.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -44,9 +45,9 @@ static BpParticleFormat format_of_beginning(const char *text, size_t length) {
     if (strncmp(text, "ply", 3) == 0 && text[3] != '\0' && strchr(" \t\r\n", text[3]) != NULL)
         return BP_PARTICLES_PLY;
     if (strncmp(text, "ITEM: ", 6) == 0) return BP_PARTICLES_DUMP;
-    if (strncmp(text, "data_", 5) == 0) return BP_PARTICLES_CIF;
+    if (strncasecmp(text, "data_", 5) == 0) return BP_PARTICLES_CIF;
     for (size_t i = 0; i < sizeof pdb / sizeof *pdb; i++)
-        if (strncmp(text, pdb[i], strlen(pdb[i])) == 0) return BP_PARTICLES_PDB;
+        if (strncasecmp(text, pdb[i], strlen(pdb[i])) == 0) return BP_PARTICLES_PDB;
     return BP_PARTICLES_NONE;
 }
 

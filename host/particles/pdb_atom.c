@@ -7,6 +7,7 @@
 #include "elements.h"
 
 #include <string.h>
+#include <strings.h>
 
 const char *const pdb_columns[PDB_COLUMN_COUNT] = {"occupancy", "bfactor", "residue_number"};
 
@@ -18,10 +19,14 @@ static bool is_letter(char c) {
     return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
 }
 
+bool pdb_is_record(const char *line, const char *name) {
+    return strncasecmp(line, name, strlen(name)) == 0;
+}
+
 /* Numbers above 99,999 begin before the usual columns in some files, and PQR has words. */
 bool pdb_is_atom(const char *line) {
-    if (strncmp(line, "HETATM", 6) == 0) return true;
-    if (strncmp(line, "ATOM", 4) != 0) return false;
+    if (pdb_is_record(line, "HETATM")) return true;
+    if (!pdb_is_record(line, "ATOM")) return false;
     return line[4] == '\t' || line[4] == '\0' ||
            ((line[4] == ' ' || is_digit(line[4])) && (line[5] == ' ' || is_digit(line[5])));
 }
@@ -119,10 +124,9 @@ BpStatus pdb_read_atom(const Input *input, const char *line, PdbAtom *atom, PdbF
     char symbol[4], padded[5] = "    ", number[8], segment[8], text[16];
     *atom = (PdbAtom){.particle = PARTICLE_NONE};
     Particle *const particle = &atom->particle;
-    const bool hetero = line[0] == 'H';
+    const bool hetero = pdb_is_record(line, "H");
     const bool by_serial = by > 0 && digits_at(line, 7, 11 + by);
-    fixed_text(line, length, line[0] == 'A' ? 5 : 7, by_serial ? 11 + by : 11, atom->serial,
-               sizeof atom->serial);
+    fixed_text(line, length, hetero ? 7 : 5, by_serial ? 11 + by : 11, atom->serial, sizeof atom->serial);
     if (by_serial) { /* all that follows is moved; else only what follows the residue's number */
         line += by;
         length -= by;
@@ -138,6 +142,7 @@ BpStatus pdb_read_atom(const Input *input, const char *line, PdbAtom *atom, PdbF
     fixed_text(line, length, 17, 17, atom->letter, sizeof atom->letter);
     const size_t last = length > 26 && is_digit(line[26]) ? 27 + (by > 1) : 26; /* five digits, six */
     fixed_text(line, length, 23, last, number, sizeof number);
+    atom->numbered = number[0] != '\0';
     snprintf(atom->site, sizeof atom->site, "%s/%s", atom->chain,
              fixed_text(line, length, 23, 27 + by, text, sizeof text));
     line += by;

@@ -12,12 +12,15 @@ typedef struct PdbAtom {
     Particle particle; /* whose texts are those below, as `values` are its values */
     char name[8], residue[8], chain[8];
     char serial[12], site[32], letter[2]; /* as in pdb_connect.h and places.h */
-    double values[3];                     /* of pdb_columns or pqr_columns */
+    bool numbered;
+    double values[3]; /* of pdb_columns or pqr_columns */
 } PdbAtom;
 
 enum { PDB_COLUMN_COUNT = 3 };
 extern const char *const pdb_columns[PDB_COLUMN_COUNT], *const pqr_columns[PDB_COLUMN_COUNT];
 
+/* Whether a line begins with that name, in letters of either case, as other readers have it. */
+bool pdb_is_record(const char *line, const char *name);
 bool pdb_is_atom(const char *line);
 /* How a program writes lines of atoms, as far as those before tell; all false at the beginning of a file. */
 typedef struct PdbForm {

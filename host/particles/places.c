@@ -50,13 +50,35 @@ static bool grow(Places *places) {
     return true;
 }
 
-BpStatus places_take(Places *places, const BpParticles *particles, const char *site, const char *letter,
-                     BpError *err) {
+/* The site of the last particle, whose residue has no number: that of the particle before, unless this is
+ * again its first atom, and at no other of its places. */
+static uint64_t unnumbered_site(Places *places, const BpParticles *p, uint64_t site, uint32_t letter) {
+    const BpParticleTag *const tag = &p->tag[p->count - 1];
+    const uint64_t bit = letter == 0 ? UINT64_MAX : (uint64_t)1 << letter % 61;
+    const bool goes_on = places->unnumbered.number > 0 && places->unnumbered.site == site &&
+                         places->unnumbered.residue == tag->residue;
+    const bool is_first = tag->name == places->unnumbered.name;
+    if (!goes_on || (is_first && (places->unnumbered.letters & bit) != 0)) {
+        places->unnumbered.number++;
+        places->unnumbered.site = site;
+        places->unnumbered.letters = bit;
+        places->unnumbered.name = tag->name;
+        places->unnumbered.residue = tag->residue;
+    } else if (is_first) {
+        places->unnumbered.letters |= bit;
+    }
+    return bp_hash_bytes(site, &places->unnumbered.number, sizeof places->unnumbered.number);
+}
+
+BpStatus places_take(Places *places, const BpParticles *particles, const char *site, bool numbered,
+                     const char *letter, BpError *err) {
     if (places->count >= particles->count) return BP_OK;
     if (places->count == places->capacity && !grow(places))
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for the places of %zu atoms", places->count);
-    places->site[places->count] = number_of(site);
-    places->letter[places->count++] = letter_of(letter);
+    const uint64_t number = number_of(site);
+    const uint32_t own = letter_of(letter);
+    places->site[places->count] = numbered ? number : unnumbered_site(places, particles, number, own);
+    places->letter[places->count++] = own;
     places->any |= letter[0] != '\0';
     return BP_OK;
 }

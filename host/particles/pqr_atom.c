@@ -43,12 +43,13 @@ static void take_residue_number(PdbAtom *atom, const char *word) {
     if (front > 0 && atom->chain[0] == '\0')
         snprintf(atom->chain, sizeof atom->chain, "%.*s", front < 7 ? (int)front : 7, word);
     snprintf(atom->site, sizeof atom->site, "%s/%.15s", atom->chain, word + front);
+    atom->numbered = true;
 }
 
 /* What stands before the coordinates; false: other words than expected. */
 static bool take_head(PdbAtom *atom, char *text) {
     char *words[HEAD_MAX];
-    const size_t count = split_words(text + (text[0] == 'H' ? 6 : 4), words, HEAD_MAX);
+    const size_t count = split_words(text + (pdb_is_record(text, "H") ? 6 : 4), words, HEAD_MAX);
     if (count != 4 && count != 5) return false;
     snprintf(atom->serial, sizeof atom->serial, "%.11s", words[0]);
     snprintf(atom->name, sizeof atom->name, "%.7s", words[1]);
@@ -80,7 +81,8 @@ static bool take_text(PdbAtom *atom, char *text, const char **wrong) {
     for (size_t i = NUMBERS; i-- > 0;) {
         if (word == NULL) return false;
         *wrong = word;
-        if (!word_number(word, &numbers[i]) || (i == 4 && numbers[i] < 0)) return false;
+        const bool good = i < 3 ? word_number_or_none(word, &numbers[i]) : word_number(word, &numbers[i]);
+        if (!good || (i == 4 && numbers[i] < 0)) return false;
         if (i > 0) word = cut_number(text);
     }
     *wrong = "";
@@ -102,7 +104,7 @@ BpStatus pqr_read_atom(const Input *input, const char *line, PdbAtom *atom, BpEr
     if (!take_text(atom, text, &wrong) &&
         !(part_columns(line, again, sizeof again) && take_text(atom, again, &other)))
         return input_wrong(input, wrong[0] != '\0' ? wrong : line, expected, err);
-    if (line[0] == 'H') atom->particle.flags |= BP_PARTICLE_HETERO;
+    if (pdb_is_record(line, "H")) atom->particle.flags |= BP_PARTICLE_HETERO;
     atom->particle.name = atom->name;
     atom->particle.chain = atom->chain;
     atom->particle.values = atom->values;

@@ -375,9 +375,10 @@ static BpStatus add_row(BpParticleFile *file, State *state, BpError *err) {
     BP_TRY(frame_add(file, &particle, true, err));
     if (file->out == NULL || !particle_has_place(&particle)) return BP_OK;
     char site[3 * CIF_TEXT_SIZE];
-    snprintf(site, sizeof site, "%s/%s/%s", particle.chain, text_of(state, AUTH_SEQUENCE, LABEL_SEQUENCE),
-             text_of(state, INSERTION, INSERTION));
-    return places_take(&state->places, file->out, site, text_of(state, ALTERNATIVE, ALTERNATIVE), err);
+    const char *const number = text_of(state, AUTH_SEQUENCE, LABEL_SEQUENCE);
+    snprintf(site, sizeof site, "%s/%s/%s", particle.chain, number, text_of(state, INSERTION, INSERTION));
+    return places_take(&state->places, file->out, site, number[0] != '\0',
+                       text_of(state, ALTERNATIVE, ALTERNATIVE), err);
 }
 
 /* The next row of the table, unless one is held. *more: there is one. */

@@ -7,6 +7,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* How far connections are looked for behind a model. */
 #define TAIL_BYTES_MAX ((uint64_t)1 << 30)
@@ -29,10 +30,6 @@ typedef struct State {
     bool by_end;          /* that record was END */
 } State;
 
-static bool is_record(const char *line, const char *name) {
-    return strncmp(line, name, strlen(name)) == 0;
-}
-
 /* A number in fixed columns; false when there is none. */
 static bool fixed_number(const char *line, size_t first, size_t last, double *value) {
     char text[16];
@@ -53,11 +50,11 @@ static void take_cell(BpParticleFile *file, const State *state) {
 /* The cell and how it lies are kept for the frames that follow, since many files say them once; but a new
  * cell does not lie as the one before. */
 static void take_crystal(State *state, const char *line) {
-    if (is_record(line, "CRYST1") && strncmp(line, state->cell, CELL_BYTES) != 0) {
+    if (pdb_is_record(line, "CRYST1") && strncmp(line, state->cell, CELL_BYTES) != 0) {
         snprintf(state->cell, sizeof state->cell, "%.*s", CELL_BYTES, line);
         if (!state->scale_here) state->crystal = (CrystalFrame){0};
     }
-    if (!is_record(line, "SCALE") || line[5] < '1' || line[5] > '3') return;
+    if (!pdb_is_record(line, "SCALE") || line[5] < '1' || line[5] > '3') return;
     if (!state->scale_here) state->crystal = (CrystalFrame){0};
     state->scale_here = true;
     const int i = line[5] - '1';
@@ -75,7 +72,7 @@ static BpStatus take_atom(BpParticleFile *file, State *state, const char *line, 
         BP_TRY(pdb_read_atom(&file->input, line, &atom, &state->form, err));
     BP_TRY(frame_add(file, &atom.particle, true, err));
     if (file->out == NULL) return BP_OK;
-    BP_TRY(places_take(&state->places, file->out, atom.site, atom.letter, err));
+    BP_TRY(places_take(&state->places, file->out, atom.site, atom.numbered, atom.letter, err));
     return pdb_take_serial(&state->serials, atom.serial, err);
 }
 
@@ -107,7 +104,7 @@ static BpStatus read_tail(Input *input, State *state, BpError *err) {
             state->tail.count = state->tail.unreadable = 0; /* those of a model are its own */
             state->more = true;
         }
-        if (is_record(line, "CONECT")) status = pdb_take_links(&state->tail, &state->serials, line, err);
+        if (pdb_is_record(line, "CONECT")) status = pdb_take_links(&state->tail, &state->serials, line, err);
     }
     BP_TRY(status);
     state->tail_read = true;
@@ -121,7 +118,7 @@ static BpStatus take_cell_behind(BpParticleFile *file, State *state, BpError *er
     if (!state->cell_behind) return BP_OK;
     BP_TRY(input_line(&file->input, &line, err));
     if (line == NULL) return BP_OK;
-    if (is_record(line, "CRYST1"))
+    if (pdb_is_record(line, "CRYST1"))
         take_crystal(state, line);
     else
         input_hold(&file->input, line);
@@ -143,15 +140,15 @@ BpStatus read_pdb(BpParticleFile *file, bool *end, BpError *err) {
         BP_TRY(input_line(input, &line, err));
         if (line == NULL) break;
         take_crystal(state, line);
-        model = is_record(line, "ENDMDL");
-        closed = has_atoms && (model || strcmp(line, "END") == 0 || is_record(line, "END "));
+        model = pdb_is_record(line, "ENDMDL");
+        closed = has_atoms && (model || strcasecmp(line, "END") == 0 || pdb_is_record(line, "END "));
         if (closed) break;
-        if (has_atoms && is_record(line, "MODEL ")) {
+        if (has_atoms && pdb_is_record(line, "MODEL ")) {
             input_hold(input, line);
             state->more = true;
             break;
         }
-        if (has_atoms && file->out != NULL && is_record(line, "CONECT"))
+        if (has_atoms && file->out != NULL && pdb_is_record(line, "CONECT"))
             BP_TRY(pdb_take_links(&state->links, &state->serials, line, err));
         if (!pdb_is_atom(line)) continue;
         if (!has_atoms) BP_TRY(frame_begin(file, columns, PDB_COLUMN_COUNT, err));

@@ -208,6 +208,41 @@ class Alternatives(listed.ListTest):
         self.assertEqual(self.chosen(("CA", "B"), ("CA", " ")), [1])
         self.assertEqual(self.chosen(("C", " "), ("C", " "), ("O", "B"), ("O", "C")), [0, 1, 2])  # names that repeat
 
+    def test_residues_without_a_number(self):
+        """As water has it in mmCIF files without the author's numbers: none takes another's places, and none is lost."""
+        def found(*atoms):
+            lines = [atom(i, f" {name:<3s}", letter, residue, number="    ", place=(i, 0, 0)) for i, (name, letter, residue) in enumerate(atoms)]
+            shown = [p[0] for p in self.of("a.pdb", "".join(lines)).places(shown=True)]
+            names = "type_symbol label_atom_id label_alt_id label_comp_id label_asym_id label_seq_id Cartn_x Cartn_y Cartn_z"
+            rows = [f"C {name} {letter.strip() or '.'} {residue} B . {i} 0 0" for i, (name, letter, residue) in enumerate(atoms)]
+            cif = "data_x\nloop_\n" + "".join(f"_atom_site.{n}\n" for n in names.split()) + "\n".join(rows) + "\n"
+            self.assertEqual([p[0] for p in self.of("a.cif", cif).places(shown=True)], shown)
+            return shown
+
+        def water(letters, names="O"):
+            return [(name, letter, "HOH") for letter in letters for name in names]
+        self.assertEqual(found(*water("  AB")), [0, 1, 2])
+        self.assertEqual(found(*water("AB  ABBC")), [0, 2, 3, 4, 6])
+        self.assertEqual(found(*water("ABAB A", "OHD")), [0, 1, 2, 6, 7, 8, 12, 13, 14, 15, 16, 17])
+        self.assertEqual(found(("N", " ", "GLY"), ("CA", "A", "GLY"), ("CA", "B", "GLY"), ("N", " ", "GLY"), ("CA", "B", "GLY"), ("CA", "C", "GLY")), [0, 1, 3, 4])
+        self.assertEqual(found(("O", "A", "HOH"), ("O", "B", "HOH"), ("O", "B", "DOD"), ("O", "C", "DOD")), [0, 2])
+
+    def test_records_in_small_letters(self):
+        """As gemmi reads them: no atom is lost, and the cell and frames are found."""
+        plain = "CRYST1   20.000   30.000   40.000  90.00  90.00  90.00 P 1\nMODEL        1\n" + atom(1) + atom(2, record="HETATM", place=(4, 5, 6)) + "ENDMDL\n"
+        plain += plain[plain.index("MODEL"):] + "CONECT    1    2\nEND\n"
+        def everything(text):
+            found = self.of("a.pdb", text)
+            return found.head, found.atoms
+        whole = self.of("a.pdb", plain)
+        self.assertEqual((len(whole.atoms), whole.head["frames"], whole.head["bonds"], whole.head["cell"][1]), (2, 2, [[0, 1]], [0, 30, 0]))
+        for record in ("ATOM", "HETATM", "CRYST1", "MODEL", "ENDMDL", "CONECT", "END\n"):
+            for case in (str.lower, str.capitalize):
+                self.assertEqual(everything(plain.replace(record, case(record))), (whole.head, whole.atoms), record)
+        turned = plain.replace("MODEL", "SCALE1      0.000000 -0.033333  0.000000        0.00000\nSCALE2      0.050000  0.000000  0.000000        0.00000\n"
+                               "SCALE3      0.000000  0.000000  0.025000        0.00000\nMODEL", 1)
+        self.assertEqual(everything(turned.replace("SCALE", "scale")), everything(turned))
+
     def test_residues_that_share_a_number(self):
         """Of residues that are alternatives of each other one is shown; others merely have the same number."""
         pro, ser = {"residue": "PRO"}, {"residue": "SER"}
@@ -441,10 +476,17 @@ class Pqr(listed.ListTest):
             found = self.list(path, i)
             self.assertEqual((found.head["frames"], found.atoms[0].x, found.head["bonds"]), (3, i, [[0, 1]]))
 
+    def test_atoms_without_a_place(self):
+        atoms = PQR[PQR.index("ATOM"):PQR.index("TER")]
+        lines = atoms.replace("  -6.504", "     nan") + atoms.replace("11.639", "******").replace("ATOM ", "atom ")
+        found = self.of("a.pqr", lines, 0, "charge")
+        self.assertEqual([(a.name, a.first) for a in found.atoms], [("CA", 0.0337), ("N", -0.4157)])
+        self.assertIn("2 points without a place left out", found.head["notes"])
+
     def test_wrong_lines(self):
         good = "ATOM      1  CA  ALA A  52       1.500  -2.250   3.125 -0.5000 1.7500"
         for line, found in [(good.replace("-0.5000 1.7500", ""), "A"), (good.replace(" 1.7500", "-1.7500"), "-1.7500"),
-                            (good.replace("-2.250", "   nan"), "nan"), (good.replace("1.7500", "1.75x"), "1.75x"), ("ATOM", "ATOM"),
+                            (good.replace("1.7500", "1.75x"), "1.75x"), ("ATOM", "ATOM"),
                             (good.replace("CA  ALA", "CA  ALA B C"), "ATOM"), ("ATOM 1 CA 1 2 3 4 5", "ATOM"), (good + 300 * " 1", "ATOM")]:
             self.refuse("a.pqr", good + "\n" + line + "\n", ":2: found \"", found, "expected")
 
