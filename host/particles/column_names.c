@@ -12,12 +12,17 @@ static bool is_separator(char c) {
     return c != '\0' && strchr(" \t._:-", c) != NULL;
 }
 
-/* Where the unit behind a name begins, its bracket or its slash; NULL: it has none. Brackets around a number
- * are an index. */
+/* Where the unit behind a name begins, its bracket, its slash, or the blank or underscore before a unit that
+ * is known; NULL: it has none. Brackets around a number are an index, "m" and "a" are indices as well, and
+ * "cm" is a centre of mass. */
 static const char *unit_at(const char *name) {
-    const char *const at = strpbrk(name, "([/");
-    if (at == NULL || at == name || (at[1] >= '0' && at[1] <= '9')) return NULL;
-    return at;
+    const char *at = strpbrk(name, "([/");
+    if (at != NULL) return at == name || (at[1] >= '0' && at[1] <= '9') ? NULL : at;
+    at = strpbrk(name, "_ ");
+    for (const char *next = at; next != NULL; next = strpbrk(next + 1, "_ ")) at = next;
+    const bool is_unit = at != NULL && at > name && strlen(at) > 2 && strcasecmp(at + 1, "cm") != 0 &&
+                         column_angstrom(at + 1) > 0;
+    return is_unit ? at : NULL;
 }
 
 /* The name in small letters, without separators and, if so wanted, without its unit. */
@@ -92,9 +97,10 @@ bool column_find_color(const char *const *names, size_t count, int place[3]) {
 }
 
 const char *column_single_color(const char *const *names, size_t count) {
-    /* The last is the first coefficient of a Gaussian splat's colour. */
-    static const char *const words[] = {"color",    "colour",   "rgb", "rgba", "colorhex",
-                                        "hexcolor", "colorrgb", "hex", "fdc0"};
+    /* The last is the first coefficient of a Gaussian splat's colour; those before count where they are not
+     * all there. */
+    static const char *const words[] = {"color",    "colour", "rgb", "rgba",  "colorhex", "hexcolor",
+                                        "colorrgb", "hex",    "red", "green", "blue",     "fdc0"};
     char name[NAME_SIZE];
     for (size_t i = 0; i < count; i++) {
         simplify(names[i], false, name);

@@ -4,7 +4,8 @@
  * Knows: names that are in use.   Does not know: where they stand.
  *
  * Letters count the same in both cases, and what separates words does not count: "Position.X", "pos_x",
- * "Points:0" and "coords[0]" are all understood. A unit may follow: "x (nm)", "x [nm]", "x/nm". */
+ * "Points:0" and "coords[0]" are all understood. A unit may follow: "x (nm)", "x [nm]", "x/nm",
+ * "x_nm". */
 #ifndef BP_PARTICLES_COLUMN_NAMES_H
 #define BP_PARTICLES_COLUMN_NAMES_H
 
@@ -21,8 +22,8 @@ int column_named(const char *const *names, size_t count, const char *wanted);
 size_t column_find_places(const char *const *names, size_t count, int place[3]);
 /* The columns of red, green and blue; false unless all three are there and once. */
 bool column_find_color(const char *const *names, size_t count, int place[3]);
-/* A column that seems to hold colours, but in a form that is not read: a name, a packed number. NULL: none.
- */
+/* A column that seems to hold colours, but in a form that is not read: a name, a packed number, one channel
+ * of three. NULL: none. */
 const char *column_single_color(const char *const *names, size_t count);
 /* The unit behind a name; "": none. */
 void column_unit(const char *name, char unit[COLUMN_UNIT_SIZE]);

@@ -2,6 +2,7 @@
  *
  * Knows: wrapped, scaled and unwrapped coordinates; boxes that are orthogonal, triclinic in LAMMPS's own
  * form, and triclinic by three vectors; units. */
+#include "column_names.h"
 #include "elements.h"
 #include "lammps.h"
 #include "reader.h"
@@ -17,7 +18,7 @@ typedef struct Dump {
     char header[4096]; /* the words after ITEM: ATOMS */
     char *columns[WORDS_MAX];
     size_t column_count;
-    int position[3], shape[3], type, element, radius, diameter, mass,
+    int position[3], shape[3], color[3], type, element, radius, diameter, mass,
         molecule;        /* places of columns; -1: nowhere */
     size_t known_masses; /* those of elements, in this frame */
     bool united;         /* some stand for a carbon and its hydrogens */
@@ -79,7 +80,7 @@ static BpStatus take_box(Input *input, const char *flags, Dump *dump, BpError *e
     return BP_OK;
 }
 
-static int column_named(const Dump *dump, const char *name) {
+static int place_of(const Dump *dump, const char *name) {
     for (size_t i = 0; i < dump->column_count; i++)
         if (strcmp(dump->columns[i], name) == 0) return (int)i;
     return -1;
@@ -92,7 +93,7 @@ static void find_shape(Dump *dump) {
                                            {"c_shape[1]", "c_shape[2]", "c_shape[3]"},
                                            {"c_diameter[1]", "c_diameter[2]", "c_diameter[3]"}};
     for (int s = 0; s < 3; s++) {
-        for (int i = 0; i < 3; i++) dump->shape[i] = column_named(dump, sets[s][i]);
+        for (int i = 0; i < 3; i++) dump->shape[i] = place_of(dump, sets[s][i]);
         if (dump->shape[0] >= 0 && dump->shape[1] >= 0 && dump->shape[2] >= 0) return;
     }
     dump->shape[0] = -1;
@@ -115,7 +116,7 @@ static void find_quaternion(Dump *dump) {
     for (int s = 0; s < 4; s++) {
         bool whole = true;
         for (int i = 0; i < 4; i++) {
-            dump->quaternion[i] = column_named(dump, sets[s].name[i]);
+            dump->quaternion[i] = place_of(dump, sets[s].name[i]);
             whole &= dump->quaternion[i] >= 0;
         }
         dump->order = sets[s].order;
@@ -132,19 +133,21 @@ static BpStatus take_columns(Input *input, const char *text, Dump *dump, BpError
     if (dump->column_count > WORDS_MAX)
         return input_fail(input, true, err, "found %zu columns, expected at most %d", dump->column_count,
                           WORDS_MAX);
-    dump->type = column_named(dump, "type");
-    if (dump->type < 0) dump->type = column_named(dump, "typelabel");
-    dump->element = column_named(dump, "element");
-    dump->radius = column_named(dump, "radius");
-    dump->diameter = column_named(dump, "diameter");
-    dump->mass = column_named(dump, "mass");
-    dump->molecule = column_named(dump, "mol");
+    dump->type = place_of(dump, "type");
+    if (dump->type < 0) dump->type = place_of(dump, "typelabel");
+    dump->element = place_of(dump, "element");
+    dump->radius = place_of(dump, "radius");
+    dump->diameter = place_of(dump, "diameter");
+    dump->mass = place_of(dump, "mass");
+    dump->molecule = place_of(dump, "mol");
     find_shape(dump);
     find_quaternion(dump);
-    dump->block[0] = column_named(dump, "block1");
-    dump->block[1] = column_named(dump, "block2");
+    dump->block[0] = place_of(dump, "block1");
+    dump->block[1] = place_of(dump, "block2");
+    if (!column_find_color((const char *const *)dump->columns, dump->column_count, dump->color))
+        dump->color[0] = -1;
     for (int s = 0; s < 4; s++) {
-        for (int i = 0; i < 3; i++) dump->position[i] = column_named(dump, sets[s][i]);
+        for (int i = 0; i < 3; i++) dump->position[i] = place_of(dump, sets[s][i]);
         if (dump->position[0] < 0 || dump->position[1] < 0 || dump->position[2] < 0) continue;
         dump->scaled = s % 2 == 1;
         dump->unwrapped = s >= 2;
@@ -220,6 +223,10 @@ static BpStatus take_atom(BpParticleFile *file, Dump *dump, char *line, BpError 
             return input_wrong(&file->input, words[dump->diameter], "a diameter", err);
         particle.radius /= 2;
     }
+    for (int i = 0; i < 3 && dump->color[0] >= 0; i++)
+        if (!word_number(words[dump->color[i]], &particle.color[i]))
+            return input_wrong(&file->input, words[dump->color[i]], "a finite number: a share of a colour",
+                               err);
     BP_TRY(take_shape(&file->input, dump, words, &particle, err));
     for (size_t w = 0; w < file->taken_count; w++) {
         const int c = file->wanted_column[w];
@@ -270,6 +277,7 @@ static BpStatus take_frame(BpParticleFile *file, Dump *dump, BpError *err) {
     BP_TRY(frame_begin(file, (const char *const *)dump->columns, dump->column_count, err));
     file->shapes.has_orientations = dump->quaternion[0] >= 0;
     file->shapes.order = dump->order;
+    file->colors.ambiguous = dump->color[0] >= 0;
     if (file->out != NULL) {
         file->out->up = 2;
         const State *const state = file->state;

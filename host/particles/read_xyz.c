@@ -1,6 +1,7 @@
 /* read_xyz.c: XYZ, plain and extended (the key Properties in the second line); see reader.h.
  *
  * Knows: the format.   Does not know: what becomes of the points. */
+#include "column_names.h"
 #include "elements.h"
 #include "key_values.h"
 #include "lammps.h"
@@ -41,6 +42,7 @@ typedef struct Layout {
     int column_word[BP_PARTICLE_COLUMNS_MAX];
     size_t column_count;
     bool extended, whole_colors; /* whole_colors: they are of type I */
+    int color_word[3];           /* of red, green and blue in columns of their own; below 0: nowhere */
     bool number_seen[BP_ELEMENT_MAX + 1], symbol_seen, name_seen; /* among the species */
 } Layout;
 
@@ -105,6 +107,13 @@ static void add_columns(Layout *layout, Role role, const char *name, int64_t cou
     }
 }
 
+/* Properties of one number each may be red, green and blue. */
+static void find_color(Layout *layout) {
+    int place[3];
+    const bool found = column_find_color(layout->columns, layout->column_count, place);
+    for (int i = 0; i < 3; i++) layout->color_word[i] = found ? layout->column_word[place[i]] : -1;
+}
+
 static BpStatus parse_properties(const Input *input, char *text, Layout *layout, BpError *err) {
     static const char expected[] = "Properties=NAME:TYPE:COUNT:..., such as species:S:1:pos:R:3";
     bool has_position = false;
@@ -129,6 +138,7 @@ static BpStatus parse_properties(const Input *input, char *text, Layout *layout,
         word += (int)count;
     }
     layout->word_count = (size_t)word;
+    find_color(layout);
     if (!has_position) return input_fail(input, true, err, "found no pos:R:3, expected %s", expected);
     return BP_OK;
 }
@@ -141,7 +151,10 @@ static void plain_layout(Layout *layout) {
     layout->property[1].words = 3;
     layout->property_count = 2;
     layout->word_count = 4;
-    for (int i = 0; i < 3; i++) add_column(layout, axes[i], "", 1 + i);
+    for (int i = 0; i < 3; i++) {
+        add_column(layout, axes[i], "", 1 + i);
+        layout->color_word[i] = -1;
+    }
 }
 
 static BpStatus fail_cell(const Input *input, const char *key, const char *expected, BpError *err) {
@@ -249,7 +262,7 @@ static BpStatus begin_frame(BpParticleFile *file, const char *comment, Layout *l
         file->out->angstrom = 1;
         if (!layout->extended) take_units(file->out, comment);
     }
-    file->colors.ambiguous = layout->whole_colors;
+    file->colors.ambiguous = layout->whole_colors || layout->color_word[0] >= 0;
     return parse_cell(file, comment, layout->extended, value, err);
 }
 
@@ -368,6 +381,10 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
         }
         w += (size_t)layout->property[p].words;
     }
+    for (int i = 0; i < 3 && layout->color_word[i] >= 0 && isnan(particle.color[i]); i++)
+        if (!word_number(words[layout->color_word[i]], &particle.color[i]))
+            return input_wrong(input, words[layout->color_word[i]], "a finite number: a share of a colour",
+                               err);
     for (size_t k = 0; k < file->taken_count; k++) {
         const int c = file->wanted_column[k];
         values[c] = NAN;

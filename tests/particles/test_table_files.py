@@ -291,6 +291,20 @@ class Xyz(TableTest):
         self.colours("a.xyz", head % "I" + "C 0 0 0 255 128 0\nC 1 1 1 0 0 10\n", [(1, linear(128 / 255), 0), (0, 0, linear(10 / 255))], BYTES)
         self.colours("a.xyz", head % "I" + "C 0 0 0 1 0 0\nC 1 1 1 0 1 1\n", [(1, 0, 0), (0, 1, 1)], SHARES)
         self.colours("a.xyz", (head % "R").replace("R:3\n", "R:4\n") + "C 0 0 0 1 0.5 0 1\nC 1 1 1 0 0 0.25 0.5\n", [(1, 0.5, 0), (0, 0, 0.25)])
+        # In columns of their own, here and in dumps of LAMMPS; a property or column that holds the colour goes before.
+        dump = ("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\nITEM: ATOMS x y z %s\n")
+        for names in ("r g b", "Red Green Blue", "color_r color_g color_b"):
+            head = "2\nProperties=species:S:1:pos:R:3:" + ":".join(f"{name}:%s:1" for name in names.split()) + "\n"
+            for row, last, light, note in [("1 0.5 0", "0 0 0.25", [(1, 0.5, 0), (0, 0, 0.25)], SHARES), ("255 128 0", "0 1 10", [(1, linear(128 / 255), 0),
+                                           (0, linear(1 / 255), linear(10 / 255))], BYTES)]:
+                for kind in ("R", "I") if note == BYTES else ("R",):
+                    self.colours("a.xyz", head % (kind, kind, kind) + f"C 0 0 0 {row}\nC 1 1 1 {last}\n", light, note)
+                self.colours("a.dump", dump % names + f"0 0 0 {row}\n1 1 1 {last}\n", light, note)
+            self.refuse("a.xyz", head % ("R", "R", "R") + "C 0 0 0 x 0 0\nC 1 1 1 0 0 0\n", ":3:", '"x"')
+            self.refuse("a.dump", dump % names + "0 0 0 0 x 0\n1 1 1 0 0 0\n", ":10:", '"x"')
+        self.colours("a.xyz", "1\nProperties=species:S:1:pos:R:3:color:R:3:r:R:1:g:R:1:b:R:1\nC 0 0 0 1 0.5 0 0 0 1\n", [(1, 0.5, 0)], SHARES)
+        self.assertEqual(self.of("a.xyz", "1\nProperties=species:S:1:pos:R:3:red:R:1:green:R:1\nC 0 0 0 1 0.5\n")["notes"],
+                         'no colours from "red", since red, green and blue must be columns')
 
     def test_units(self):
         head = "1\n# CELL(abcABC): 9 9 9 90 90 90  Step: 0 Bead: 0 positions{%s} cell{atomic_unit}\nC 1 2 3\n"
@@ -349,9 +363,10 @@ class Csv(TableTest):
     def test_colours_in_one_column(self):
         """Names, packed numbers and coefficients of splats: a note, unless red, green and blue are there, or a column is the colour."""
         says = 'no colours from "{}", since red, green and blue must be columns'
-        for column, value in (("color", "#ff0000"), ("Colour", "red"), ("rgb", "16711680"), ("RGBA", "ff0000ff"), ("hex_color", "ff0000"), ("f_dc_0", "1.5")):
+        for column, value in (("color", "#ff0000"), ("Colour", "red"), ("rgb", "16711680"), ("RGBA", "ff0000ff"), ("hex_color", "ff0000"), ("f_dc_0", "1.5"),
+                              ("red", "1"), ("Green", "1")):
             self.assertEqual(self.of("a.csv", f"x,y,z,{column}\n1,2,3,{value}\n")["notes"], says.format(column))
-            self.assertEqual(self.of("a.csv", f"x,y,z,{column},r,g,b\n1,2,3,{value},1,0,0\n")["notes"], SHARES)
+            self.assertEqual(self.of("a.csv", f"x,y,z,{column},color_r,color_g,color_b\n1,2,3,{value},1,0,0\n")["notes"], SHARES)
             self.assertEqual(self.of("a.csv", f"x,y,z,{column}\n1,2,3,{value}\n", 0, "x")["notes"], "")
         self.assertEqual(self.of("a.ply", PLY % (1, "property float f_dc_0\n") + "1 2 3 4\n")["notes"], says.format("f_dc_0"))
         self.assertEqual(self.of("a.xyz", "1\nProperties=species:S:1:pos:R:3:rgb:I:1\nC 1 2 3 4\n")["notes"], says.format("rgb"))
@@ -383,7 +398,8 @@ class Csv(TableTest):
         for names in ("x,y,z", "X,Y,Z", "x (nm),y (nm),z (nm)", "x [A],y [A],z [A]", "x/nm,y/nm,z/nm", "Position.X,Position.Y,Position.Z", "pos_x,pos_y,pos_z",
                       "posx,posy,posz", "Points:0,Points:1,Points:2", "Points_0,Points_1,Points_2", "coords_0,coords_1,coords_2", "coords[0],coords[1],coords[2]",
                       "Position X,Position Y,Position Z", "x_coord,y_coord,z_coord", "X Position,Y Position,Z Position", "center_x,center_y,center_z",
-                      '"x","y","z"', '"x (a, b)","y (a, b)","z (a, b)"', " x , y , z ", "x[µm],y[µm],z[µm]"):
+                      '"x","y","z"', '"x (a, b)","y (a, b)","z (a, b)"', " x , y , z ", "x[µm],y[µm],z[µm]", "x_nm,y_nm,z_nm", "x nm,y nm,z nm",
+                      "pos_x_um,pos_y_um,pos_z_um", "X_µm,Y_µm,Z_µm"):
             self.places("a.csv", f"{names}\n1,2,3\n4,5,6\n", [(1, 2, 3), (4, 5, 6)])
             self.places("a.csv", f"id,{names},q\n9,1,2,3,8\n9,4,5,6,8\n", [(1, 2, 3), (4, 5, 6)])
             self.places("a.csv", f"# {names}\n1,2,3\n", [(1, 2, 3)])
@@ -392,13 +408,19 @@ class Csv(TableTest):
         self.places("a.csv", "x,y,x/y,z\n1,2,9,3\n", [(1, 2, 3)])
         self.refuse("a.csv", "x,y,z,X\n1,2,3,4\n", "found x in two columns")
         self.refuse("a.csv", "x (nm),x (px),y\n1,2,3\n", "found x in two columns")
+        self.places("a.csv", "x,y,z,x_nm\n1,2,3,4\n", [(1, 2, 3)])
         self.refuse("a.csv", "x (nm),y (nm),z (um)\n1,2,3\n", "nm", "um", "one unit")
+        self.refuse("a.csv", "x_nm,y_nm,z_nm,r_um\n1,2,3,4\n", "nm", "um", "one unit")
+        for other in ("cm", "m", "a", "px", "nm_0"):  # a centre of mass, an index, no unit
+            self.refuse("a.csv", f"x_{other},y_{other},z_{other}\n1,2,3\n", "no columns x and y")
         self.refuse("a.csv", "a,b,c\n1,2,3\n", "no columns x and y")
 
     def test_units_of_elements(self):
         """Radii by element are in the unit of the places."""
         for unit, angstrom in [("nm", 0.1), ("A", 1), ("Å", 1), ("pm", 100), ("um", 1e-4), ("px", 1)]:
             self.near([self.of("a.csv", f"x ({unit}),y ({unit}),z,element\n1,2,3,C\n")["angstrom"]], [angstrom])
+            if len(unit) > 1 and unit != "px":
+                self.near([self.of("a.csv", f"x_{unit},y_{unit},z_{unit},element\n1,2,3,C\n")["angstrom"]], [angstrom])
         self.assertEqual(self.of("a.csv", "x,y,z,element\n1,2,3,C\n")["angstrom"], 1)
 
     def test_texts_below_the_names(self):
