@@ -110,6 +110,20 @@ const char *column_single_color(const char *const *names, size_t count) {
     return NULL;
 }
 
+const char *column_unread_shape(const char *const *names, size_t count) {
+    /* The last is that of Gaussian splats. */
+    static const char *const words[] = {"asphericalshape", "shape",    "radius",   "radii", "diameter",
+                                        "semiaxis",        "semiaxes", "halfaxis", "scale"};
+    static const char *const endings[3][3] = {{"x", "y", "z"}, {"0", "1", "2"}, {"1", "2", "3"}};
+    for (size_t w = 0; w < COUNT(words); w++)
+        for (int form = 0; form < 3; form++) {
+            int place[3];
+            find_set(names, count, words[w], endings[form], false, place);
+            if (place[0] >= 0 && place[1] >= 0 && place[2] >= 0) return names[place[0]];
+        }
+    return NULL;
+}
+
 void column_unit(const char *name, char unit[COLUMN_UNIT_SIZE]) {
     const char *at = unit_at(name);
     unit[0] = '\0';

@@ -25,6 +25,8 @@ bool column_find_color(const char *const *names, size_t count, int place[3]);
 /* A column that seems to hold colours, but in a form that is not read: a name, a packed number, one channel
  * of three. NULL: none. */
 const char *column_single_color(const char *const *names, size_t count);
+/* The first of three columns that seem to hold the axes of ellipsoids. NULL: there are none. */
+const char *column_unread_shape(const char *const *names, size_t count);
 /* The unit behind a name; "": none. */
 void column_unit(const char *name, char unit[COLUMN_UNIT_SIZE]);
 /* An angstrom in that unit; 0: no unit that is known. */

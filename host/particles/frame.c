@@ -103,6 +103,8 @@ BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t co
     if (file->wanted_count > file->needed) BP_TRY(keep_names(p, columns, column_count, err));
     const char *const unread = column_single_color(columns, column_count);
     bp_printable(unread != NULL ? unread : "", file->unread_color, sizeof file->unread_color);
+    const char *const axis = column_unread_shape(columns, column_count);
+    bp_printable(axis != NULL ? axis : "", file->unread_shape, sizeof file->unread_shape);
     return BP_OK;
 }
 
@@ -289,6 +291,10 @@ BpStatus frame_end(BpParticleFile *file, BpError *err) {
         p->gone_count = file->gone_count;
     }
     frame_end_shapes(file);
+    if (file->unread_shape[0] != '\0' && file->needed == 0)
+        bp_particles_note(p, "%s particle%s drawn as %s, since axes such as \"%s\" are not read",
+                          bp_format_whole(p->count, number, sizeof number), bp_plural(p->count),
+                          p->count == 1 ? "a sphere" : "spheres", file->unread_shape);
     if (p->color == NULL && file->unread_color[0] != '\0' && file->needed == 0)
         bp_particles_note(p, "no colours from \"%s\", since red, green and blue must be columns",
                           file->unread_color);

@@ -278,6 +278,7 @@ static BpStatus take_frame(BpParticleFile *file, Dump *dump, BpError *err) {
     file->shapes.has_orientations = dump->quaternion[0] >= 0;
     file->shapes.order = dump->order;
     file->colors.ambiguous = dump->color[0] >= 0;
+    if (dump->shape[0] >= 0) file->unread_shape[0] = '\0';
     if (file->out != NULL) {
         file->out->up = 2;
         const State *const state = file->state;

@@ -42,6 +42,7 @@ typedef struct Layout {
     int column_word[BP_PARTICLE_COLUMNS_MAX];
     size_t column_count;
     bool extended, whole_colors; /* whole_colors: they are of type I */
+    bool has_shape;              /* some property is one */
     int color_word[3];           /* of red, green and blue in columns of their own; below 0: nowhere */
     bool number_seen[BP_ELEMENT_MAX + 1], symbol_seen, name_seen; /* among the species */
 } Layout;
@@ -132,6 +133,7 @@ static BpStatus parse_properties(const Input *input, char *text, Layout *layout,
         if (role == POSITION && has_position) role = OTHER;
         has_position |= role == POSITION;
         layout->whole_colors |= role == COLOR && type == 'I';
+        layout->has_shape |= role == SHAPE;
         if (type != 'S') add_columns(layout, role, name, count, word);
         layout->property[layout->property_count].role = role;
         layout->property[layout->property_count++].words = (int)count;
@@ -262,6 +264,7 @@ static BpStatus begin_frame(BpParticleFile *file, const char *comment, Layout *l
         file->out->angstrom = 1;
         if (!layout->extended) take_units(file->out, comment);
     }
+    if (layout->has_shape) file->unread_shape[0] = '\0';
     file->colors.ambiguous = layout->whole_colors || layout->color_word[0] >= 0;
     return parse_cell(file, comment, layout->extended, value, err);
 }

@@ -44,9 +44,11 @@ struct BpParticleFile {
         bool has_orientations;    /* set by the reader after frame_begin */
         const char *order;        /* set by the reader: how it read those that do not say it; NULL: they do */
     } shapes;
-    char unread_color[32]; /* a column of this frame that seems to hold colours; "" */
-    ColorRange colors;     /* of this frame; what the type says of them, the reader sets after frame_begin */
-    void *state;           /* of the format's reader, freed with the file */
+    /* Columns of this frame that seem to hold colours, and axes of ellipsoids; "". A reader that reads the
+     * latter empties it. */
+    char unread_color[32], unread_shape[32];
+    ColorRange colors; /* of this frame; what the type says of them, the reader sets after frame_begin */
+    void *state;       /* of the format's reader, freed with the file */
 };
 
 /* One particle. Texts may be NULL and are copied; those of BP_PARTICLE_NAME_SIZE bytes and more are

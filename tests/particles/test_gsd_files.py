@@ -223,6 +223,29 @@ class Shapes(ValuesTest):
 
 
 class Boxes(ValuesTest):
+    def test_axes_that_are_not_read(self):
+        """Under other names than those that are read: the spheres are said, unless a column is the radius or the colour."""
+        says = '2 particles drawn as spheres, since axes such as "%s" are not read'
+        dump = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\nITEM: ATOMS x y z "
+        ply = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+        rows = [[0, 0, 0, 1, 2, 3], [4, 4, 4, 3, 2, 1]]
+        for names in ("Aspherical Shape.X", "AsphericalShape.Y", "AsphericalShape.Z"), ("radius_x", "radius_y", "radius_z"), ("scale_0", "scale_1", "scale_2"), \
+                     ("semi_axis_1", "semi_axis_2", "semi_axis_3"):
+            table = "x,y,z," + ",".join(names) + "\n" + "".join(",".join(map(str, row)) + "\n" for row in rows)
+            self.assertIn(says % names[0], self.of("a.csv", table)["notes"])
+            self.assertNotIn("sphere", self.of("a.csv", table, 0, names[1])["notes"])
+            self.assertNotIn("sphere", self.of("a.csv", table.replace(names[2], "other"))["notes"])
+            if " " not in names[0]:
+                body = "".join(" ".join(map(str, row)) + "\n" for row in rows)
+                self.assertIn(says % names[0], self.of("a.dump", dump + " ".join(names) + "\n" + body)["notes"])
+                self.assertIn(says % names[0], self.of("a.ply", ply + "".join(f"property float {n}\n" for n in names) + "end_header\n" + body)["notes"])
+        self.assertIn(says % "AsphericalShape_x", self.of("a.xyz", "2\nProperties=species:S:1:pos:R:3:AsphericalShape:R:3\nC 0 0 0 1 2 3\nC 4 4 4 1 2 3\n")["notes"])
+        for shape in ("1 1 1", "1 2 3"):
+            read = [self.of("a.xyz", f"1\nProperties=species:S:1:pos:R:3:aspherical_shape:R:3\nC 0 0 0 {shape}\n"),
+                    self.of("a.dump", dump.replace("\n2\n", "\n1\n") + f"shapex shapey shapez\n0 0 0 {shape}\n")]
+            for found in read:
+                self.assertNotIn("are not read", found["notes"])
+
     def test_boxes_that_are_none(self):
         for box in ([math.nan, 9, 9, 0, 0, 0], [9, 9, 9, 0, math.nan, 0], [9, 9, math.inf, 0, 0, 0], [9, 9, 9, math.inf, 0, 0]):
             content = frame([[0, 0, 0], [1, 0, 0]])
