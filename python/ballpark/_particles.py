@@ -42,10 +42,13 @@ def _elements() -> typing.Tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]
     return np.array(vdw), np.array(covalent), np.array(colors, np.float32), numbers
 
 
-def _of_elements(numbers: npt.NDArray[typing.Any], radius: typing.Union[str, npt.ArrayLike], scale: float,
+def _of_elements(function: str, numbers: npt.NDArray[typing.Any], radius: typing.Union[str, npt.ArrayLike], scale: float,
                  color: typing.Optional[Color]) -> typing.Tuple[npt.ArrayLike, typing.Optional[Color]]:
     vdw, covalent, colors, _ = _elements()
     known = np.where((numbers >= 0) & (numbers < len(vdw)), numbers, 0).astype(np.intp)
+    unknown = int(np.count_nonzero(known == 0))
+    if unknown > 0 and (isinstance(radius, str) or color is None):
+        warn(f"ballpark: {function}: no element is known of {unknown:,} of {len(known):,} atoms")
     if isinstance(radius, str):
         if radius not in RADII:
             raise lib.SceneError(f'radius: found "{radius}", expected "vdw", "covalent", a number or an array')
@@ -60,11 +63,12 @@ def from_ase(atoms: typing.Any, *, radius: typing.Union[str, npt.ArrayLike] = "v
              material: typing.Union[None, str, Document] = None) -> Spheres:
     """The atoms of an ase.Atoms, by default with radii of van der Waals and colours by element.
 
-    radius: "vdw", "covalent", or in angstrom; scale multiplies it. color: as in Spheres.
+    radius: "vdw", "covalent", or in angstrom; scale multiplies it. color: as in Spheres. A warning counts atoms of unknown
+    elements, which look alike.
     """
     _expect("from_ase", atoms, ("get_atomic_numbers", "get_positions"), "an ase.Atoms")
     numbers = np.asarray(atoms.get_atomic_numbers())
-    radii, colors = _of_elements(numbers, radius, scale, color)
+    radii, colors = _of_elements("from_ase", numbers, radius, scale, color)
     return Spheres(np.asarray(atoms.get_positions()), radii, colors, material, name="atoms")
 
 
@@ -92,7 +96,7 @@ def from_mdanalysis(atoms: typing.Any, *, radius: typing.Union[str, npt.ArrayLik
     """The atoms of an MDAnalysis AtomGroup or Universe in its current frame, water included.
 
     Elements are the topology's; where it has none, they follow from the names of atoms and residues, and where it has
-    no names, atoms look alike. Arguments: see from_ase().
+    no names, atoms look alike, with a warning. Arguments: see from_ase().
     """
     given, atoms = atoms, getattr(atoms, "atoms", atoms)
     if not hasattr(atoms, "positions") and not hasattr(atoms, "n_atoms") or hasattr(atoms, "get_atomic_numbers"):
@@ -106,7 +110,7 @@ def from_mdanalysis(atoms: typing.Any, *, radius: typing.Union[str, npt.ArrayLik
         names = np.asarray(atoms.names)
         residues = np.asarray(atoms.resnames) if hasattr(atoms, "resnames") else np.full(len(names), "")
         numbers[unknown] = _guess(names[unknown], residues[unknown])
-    radii, colors = _of_elements(numbers, radius, scale, color)
+    radii, colors = _of_elements("from_mdanalysis", numbers, radius, scale, color)
     return Spheres(positions, radii, colors, material, name="atoms")
 
 

@@ -75,11 +75,12 @@ def test_mdanalysis(folder):
     assert np.allclose(ballpark.from_mdanalysis(fake).radius, [1.7, 2.31, 1.52])
     # A universe holds its atoms; those without a name look alike.
     universe = types.SimpleNamespace(atoms=types.SimpleNamespace(positions=np.zeros((2, 3), np.float32)))
-    assert np.allclose(ballpark.from_mdanalysis(universe).radius, 1.7)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # test_unknown_elements
+        assert np.allclose(ballpark.from_mdanalysis(universe).radius, 1.7)
     (folder / "ala.pdb").write_text(PDB)
     module = installed("MDAnalysis")
     if module:
-        import warnings
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             universe = module.Universe(str(folder / "ala.pdb"))
@@ -168,6 +169,26 @@ def test_values_of_ase(folder):
         same_picture(ballpark.from_ase(read[0]), path)
 
 
+def test_unknown_elements(_folder):
+    """They are counted, where radii or colours are those of elements."""
+    class Ghosts(FakeAtoms):
+        def get_atomic_numbers(self):
+            return np.array([8, 0, 200])
+
+    universe = types.SimpleNamespace(positions=np.zeros((3, 3), np.float32), elements=np.array(["C", "Q", ""], object))
+    for name, thing in (("from_ase", Ghosts()), ("from_mdanalysis", universe)):
+        function = getattr(ballpark, name)
+        for arguments, said in (({}, 1), ({"radius": "covalent"}, 1), ({"radius": 1.0}, 1), ({"color": "#ffffff"}, 1), ({"radius": 1.0, "color": "#ffffff"}, 0)):
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                function(thing, **arguments)
+            assert [str(one.message) for one in caught] == [f"ballpark: {name}: no element is known of 2 of 3 atoms"] * said, (name, arguments)
+            assert all(one.filename == __file__ for one in caught)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ballpark.from_ase(FakeAtoms())
+
+
 def test_refused(folder):
     """What is no object of the package is named, and so is the function that takes it."""
     arrays = np.zeros((2, 3))
@@ -184,7 +205,7 @@ def test_refused(folder):
 
 
 with tempfile.TemporaryDirectory() as name:
-    for function in (test_ase, test_mdanalysis, test_gsd, test_gsd_shapes, test_values_of_ase, test_refused):
+    for function in (test_ase, test_mdanalysis, test_gsd, test_gsd_shapes, test_values_of_ase, test_unknown_elements, test_refused):
         print(function.__name__, flush=True)
         function(pathlib.Path(name))
 for name in left_out:
