@@ -26,6 +26,7 @@ from ._picture import Picture
 from ._lines import Lines
 from ._mesh import Mesh
 from ._scene import SHAPES, Document, Scene, Shape, Spheres, list_of_shapes, shape_document
+from ._trial import try_drivers
 
 
 class Interrupted(KeyboardInterrupt):
@@ -71,6 +72,7 @@ def _device(info: lib.BpDeviceInfo) -> Device:
 
 def devices() -> typing.List[Device]:
     """Every OpenCL device; those with a `refusal` cannot render."""
+    try_drivers(lib.library()._name)
     return interruptible(_list_devices, START_SECONDS, daemon=True)
 
 
