@@ -57,6 +57,16 @@ def shape_files(name):
     return Lister("particle_summary", "tests/particles/test_gsd_files.py", (f"Shapes.test_{name}",), "1 exact")
 
 
+def listed_atoms(kind, name):
+    """A test of tests/particles/test_KIND_files.py, as ("gro", "Gro.test_titles")."""
+    return Lister("particle_list", f"tests/particles/test_{kind}_files.py", (name,), "1 exact")
+
+
+def summarized(path, name):
+    """A test of tests/particles that asks for summaries of frames."""
+    return Lister("particle_summary", f"tests/particles/{path}", (name,), "1 exact")
+
+
 def words(*names):
     """Tests of tests/scene/test_word_lists.py."""
     return Script("tests/scene/test_word_lists.py", tuple(f"Words.test_{name}" for name in names), "1 exact")
@@ -335,6 +345,26 @@ MUTANTS = [
     Mutant("molecules made whole by what is selected", "parts of one molecule lay in different images", [
         patch("host/particles/add_to_scene.c", "bp_bonds_find(p, job->base,", "bp_bonds_find(p, job->shown,")],
            [selections("guesses_hold_for_the_whole_file")]),
+    # ---- files of particles ---------------------------------------------------------------------------------
+    Mutant("names of atoms as symbols", "VMD writes names as species, and CA was calcium", [
+        patch("host/particles/read_xyz.c", "layout->name_seen |= particle.element == 0 && is_atom_name(words[w]);", "")],
+           [summarized("test_particle_files.py", "Formats.test_names_of_atoms_as_species")]),
+    Mutant("unknown elements without a word", "a radius of 1.7 for whatever it is", [
+        patch("host/particles/add_to_scene.c", "    say_unknown(job);\n", "")], [particle_scenes("unknown_elements_are_said")]),
+    Mutant("coordinates beyond their columns", "points at equal distances told the width", [
+        patch("host/particles/read_gro.c", "if (good == 3 && goes_on(line, frame->width))", "if (goes_on(line, frame->width) && good < 3)")],
+           [listed_atoms("gro", "Gro.test_points_that_do_not_fit")]),
+    Mutant("records in capitals alone", "atoms of small letters were lost without a word", [
+        patch("host/particles/pdb_atom.c", "return strncasecmp(line, name, strlen(name)) == 0;", "return strncmp(line, name, strlen(name)) == 0;")],
+           [listed_atoms("pdb", "Alternatives.test_records_in_small_letters")]),
+    Mutant("water of one residue", "without the author's numbers, one water's places hid those of another", [
+        patch("host/particles/places.c", "numbered ? number : unnumbered_site(places, particles, number, own)", "number")],
+           [listed_atoms("pdb", "Alternatives.test_residues_without_a_number")]),
+    Mutant("axes without a word", "ellipsoids under other names were spheres", [
+        patch("host/particles/column_names.c", "if (place[0] >= 0 && place[1] >= 0 && place[2] >= 0) return names[place[0]];", "")],
+           [summarized("test_gsd_files.py", "Shapes.test_axes_that_are_not_read")]),
+    Mutant("centres of mass in centimetres", "x_cm is no length", [
+        patch("host/particles/column_names.c", 'strcasecmp(at + 1, "cm") != 0 &&', "")], [summarized("test_table_files.py", "Csv.test_names_of_places")]),
     # ---- bonds ----------------------------------------------------------------------------------------------
     Mutant("a ligand's bonds for a protein's", "PDB files list the bonds of ligands, which stood for all", [
         patch("host/particles/bonds.c", "particles->bond_count == 0 || particles->bonds_partial;", "particles->bond_count == 0;")],

@@ -221,8 +221,6 @@ class Shapes(ValuesTest):
         self.near(s["bodies"][0][1:4], [1, 2, 0.1])
         self.assertEqual(s["notes"], "1 ellipsoid with an axis of 0, which became a twentieth of the longest")
 
-
-class Boxes(ValuesTest):
     def test_axes_that_are_not_read(self):
         """Under other names than those that are read: the spheres are said, unless a column is the radius or the colour."""
         says = '2 particles drawn as spheres, since axes such as "%s" are not read'
@@ -246,6 +244,8 @@ class Boxes(ValuesTest):
             for found in read:
                 self.assertNotIn("are not read", found["notes"])
 
+
+class Boxes(ValuesTest):
     def test_boxes_that_are_none(self):
         for box in ([math.nan, 9, 9, 0, 0, 0], [9, 9, 9, 0, math.nan, 0], [9, 9, math.inf, 0, 0, 0], [9, 9, 9, math.inf, 0, 0]):
             content = frame([[0, 0, 0], [1, 0, 0]])
