@@ -269,13 +269,13 @@ static BpStatus begin_frame(BpParticleFile *file, const char *comment, Layout *l
     return parse_cell(file, comment, layout->extended, value, err);
 }
 
-/* Whether a species is no symbol, but the name of an atom as in PDB: CB, OG1, HW2. */
-static bool is_atom_name(const char *species) {
+/* Whether a species may be the name of an atom as in PDB: CA, CB, OG1, HW2. Some of these are symbols, too.
+ */
+static bool may_be_name(const char *species) {
     if (strcmp(species, "OH2") == 0) return true;
-    return strchr("CHNOS", species[0]) != NULL && species[0] != '\0' && species[1] != '\0' &&
+    return species[0] != '\0' && strchr("CHNOS", species[0]) != NULL && species[1] != '\0' &&
            strchr("ABDEGWXZ", species[1]) != NULL &&
-           species[strspn(species, "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789'*")] == '\0' &&
-           bp_element_of_species(species) == 0;
+           species[strspn(species, "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789'*")] == '\0';
 }
 
 /* Splits an atom's line. In extended XYZ, texts with blanks stand in quotes; but names of atoms have quotes
@@ -361,7 +361,7 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
             const bool is_number = word_whole(words[w], &whole) && whole > 0 && whole <= BP_ELEMENT_MAX;
             layout->number_seen[is_number ? whole : 0] = true;
             layout->symbol_seen |= !is_number;
-            layout->name_seen |= particle.element == 0 && is_atom_name(words[w]);
+            layout->name_seen |= particle.element == 0 && may_be_name(words[w]);
         }
         if (role == TYPE && particle.type == NULL) {
             particle.type = words[w];
@@ -448,7 +448,7 @@ static void note_numbers(BpParticleFile *file, const Layout *layout) {
 }
 
 /* Some programs, such as VMD, write the names of atoms as species. Where one of them is no symbol, CA is no
- * calcium either. */
+ * calcium either; but TI stays titanium. */
 static BpStatus take_names(BpParticles *p, const Layout *layout, BpError *err) {
     enum { UNASKED = UINT8_MAX };
     if (p == NULL || !layout->name_seen) return BP_OK;
@@ -457,10 +457,11 @@ static BpStatus take_names(BpParticles *p, const Layout *layout, BpError *err) {
     memset(element, UNASKED, p->names.count);
     for (size_t i = 0; i < p->count; i++) {
         BpParticleTag *const tag = &p->tag[i];
+        const char *const name = p->names.text[tag->type];
         bool dummy = false;
+        if (!may_be_name(name) && (tag->element != 0 || strchr("CHNOPS", name[0]) == NULL)) continue;
         if (element[tag->type] == UNASKED || tag->residue != 0)
-            element[tag->type] =
-                bp_element_of_name(p->names.text[tag->type], p->names.text[tag->residue], false, &dummy);
+            element[tag->type] = bp_element_of_name(name, p->names.text[tag->residue], false, &dummy);
         tag->element = element[tag->type];
         if (tag->element != 0) tag->flags |= BP_PARTICLE_ELEMENT_GUESSED;
     }

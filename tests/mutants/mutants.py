@@ -347,7 +347,7 @@ MUTANTS = [
            [selections("guesses_hold_for_the_whole_file")]),
     # ---- files of particles ---------------------------------------------------------------------------------
     Mutant("names of atoms as symbols", "VMD writes names as species, and CA was calcium", [
-        patch("host/particles/read_xyz.c", "layout->name_seen |= particle.element == 0 && is_atom_name(words[w]);", "")],
+        patch("host/particles/read_xyz.c", "layout->name_seen |= particle.element == 0 && may_be_name(words[w]);", "")],
            [summarized("test_particle_files.py", "Formats.test_names_of_atoms_as_species")]),
     Mutant("unknown elements without a word", "a radius of 1.7 for whatever it is", [
         patch("host/particles/add_to_scene.c", "    say_unknown(job);\n", "")], [particle_scenes("unknown_elements_are_said")]),

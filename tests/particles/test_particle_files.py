@@ -289,7 +289,8 @@ class Formats(FileTest):
         def read(*species, extended=""):
             return self.of("a.xyz", f"{len(species)}\n{extended}\n" + "".join(f"{word} 0 0 {z}\n" for z, word in enumerate(species)))
         for species, elements in [("N CA C O CB", {"N": 1, "C": 3, "O": 1}), ("HA CA", {"H": 1, "C": 1}), ("OH2 H1 H2 CL", {"O": 1, "H": 2, "Cl": 1}),
-                                  ("CA OG1 HD11 Zn", {"C": 1, "O": 1, "H": 1, "Zn": 1}), ("CZ 7 Q", {"C": 1, "": 2})]:
+                                  ("CA OG1 HD11 Zn", {"C": 1, "O": 1, "H": 1, "Zn": 1}), ("CZ 7 Q", {"C": 1, "": 2}),
+                                  ("TI O OW HW1 UNK", {"Ti": 1, "O": 2, "H": 1, "": 1}), ("W SI CU CO1 HO CB Cd CD", {"W": 1, "Si": 1, "Cu": 1, "Co": 1, "Ho": 1, "C": 2, "Cd": 1})]:
             s = read(*species.split())
             self.assertEqual((s["elements"], s["notes"]), (elements, "elements from atom names"), species)
             s = read(*species.split(), extended="Properties=species:S:1:pos:R:3")
