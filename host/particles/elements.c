@@ -190,10 +190,12 @@ uint8_t bp_element_of_name(const char *name, const char *residue, bool fixed, bo
     *dummy = is_among(text, sites) && (!organic || text[0] != 'M') && strcasecmp(residue, "ION") != 0;
     if (strcmp(text, "M") == 0 || strcmp(text, "OM") == 0) *dummy = *dummy && water;
     if (*dummy || length == 0) return 0;
-    char symbol[3] = {letters[0], '\0', '\0'};
-    const uint8_t one = bp_element_of_symbol(symbol);
-    symbol[1] = letters[1];
+    char symbol[3] = {letters[0], letters[1], '\0'};
     const uint8_t two = letters[1] != '\0' ? bp_element_of_symbol(symbol) : 0;
+    symbol[1] = '\0';
+    /* TI is titanium, and no name of tritium. */
+    const uint8_t one = (symbol[0] | 32) != 't' || letters[1] == '\0' ? bp_element_of_symbol(symbol) : two;
+    symbol[1] = letters[1];
     /* A residue with the atom's own name is an ion or a metal: CA in CA, ZN in ZN. */
     if (two != 0 && (strncasecmp(residue, symbol, 2) == 0 && strlen(residue) <= 3) &&
         (strlen(residue) == 2 || residue[2] < 'A') && strlen(text) <= 3)

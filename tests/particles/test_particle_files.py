@@ -454,8 +454,11 @@ class Formats(FileTest):
                                         ("1HB ", "ALA", "H"), (" OXT", "ALA", "O"), ("ZN  ", "ZN", "Zn"), (" SD ", "MET", "S"),
                                         ("FE  ", "HEM", "Fe"), (" NA ", "HEM", "N"), ("NA  ", "NA", "Na"), ("CL  ", "CL", "Cl"),
                                         ("SE  ", "MSE", "Se"), (" P  ", "DA", "P"), (" C1'", "DA", "C"), (" OW ", "SOL", "O"),
-                                        ("HW1 ", "SOL", "H"), ("MW  ", "SOL", ""), (" BR ", "LIG", "B"), ("BR  ", "LIG", "Br")]:
+                                        ("HW1 ", "SOL", "H"), ("MW  ", "SOL", ""), (" BR ", "LIG", "B"), ("BR  ", "LIG", "Br"),
+                                        ("TI  ", "TIO", "Ti"), (" TI ", "TIO", "Ti"), ("TI12", "TIO", "Ti"), (" T1 ", "LIG", "H")]:
             self.assertEqual(element(name, residue), expected, (name, residue))
+        s = self.of("a.gro", "t\n2\n    1TIO     TI    1   1.000   2.000   3.000\n    1TIO     O1    2   1.200   2.000   3.000\n5 5 5\n")
+        self.assertEqual(s["elements"], {"Ti": 1, "O": 1})
 
     def test_tinker(self):
         """Its XYZ files have a number before each name, and may have a line of the cell."""
