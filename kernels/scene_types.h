@@ -249,6 +249,9 @@ typedef struct PackedVariation {
 #define TRIANGLE_REALS(width) (9 * (width))
 /* If a triangle of the scene is smooth, all have an entry in `triangle_normals`, at the places of the
  * vertices in `triangles`: the unit normals there, or zeros where a triangle is flat. */
+/* If a texture lies on a triangle of the scene, all have an entry in `triangle_coordinates`: width reals each
+ * of u and v at the first vertex, then at the second and the third; zeros where a triangle has none. */
+#define COORDINATE_REALS(width) (6 * (width))
 /* How far a leaf's spheres move while the shutter is open: width reals each of x, y, z; -0 where they do not,
  * which leaves every centre as it is. Empty where no sphere of the scene moves and no kernel asks. */
 #define MOTION_REALS(width) (3 * (width))
@@ -368,6 +371,10 @@ typedef struct PackedVariation {
 /* Of kernels that know normals at vertices: after those, and `normal_leaves` after `first_triangles`. */
 #define SCENE_ARRAYS_OF_NORMALS(X)                                                                           \
     X(REALS, real, triangle_normals, normal_leaves * TRIANGLE_REALS(width), "the triangles' normals")
+/* Of kernels that know texture coordinates: after those, and `coordinate_leaves` after `normal_leaves`. */
+#define SCENE_ARRAYS_OF_COORDINATES(X)                                                                       \
+    X(REALS, real, triangle_coordinates, coordinate_leaves * COORDINATE_REALS(width),                        \
+      "the triangles' texture coordinates")
 /* Of kernels that know capsules, before those. */
 #define SCENE_ARRAYS_OF_CAPSULES(X)                                                                          \
     X(REALS, real, leaf_axes, axis_leaves * AXIS_REALS(width), "the capsules' axes")

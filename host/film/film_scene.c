@@ -288,6 +288,9 @@ uint64_t bp_scene_hash(const BpScene *scene) {
         hash = mix_colours(hash, scene, &scene->materials[triangle->material], triangle->albedo);
         const float(*const normals)[3] = bp_triangle_normals(scene, i);
         for (int k = 0; k < 9 && normals != NULL; k++) hash = mix_real(hash, (double)normals[k / 3][k % 3]);
+        const float *const at = bp_triangle_coordinates(scene, i);
+        if (at != NULL) hash = mix(hash, 0x7576u);
+        for (int k = 0; k < 6 && at != NULL; k++) hash = mix_real(hash, (double)at[k]);
     }
     if (scene->capsule_count > 0) hash = mix(mix(hash, 0x63617073u), scene->capsule_count);
     for (size_t i = 0; i < scene->capsule_count; i++) {

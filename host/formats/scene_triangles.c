@@ -37,7 +37,7 @@ static void put(BpTriangle *triangle, const double *a, const double *b, const do
 
 static BpStatus parse_triangle(const BpNode *node, const BpMaterialIndex *index, BpTriangle *triangle,
                                BpError *err) {
-    static const char *const names[] = {"vertices", "normals", "material"};
+    static const char *const names[] = {"vertices", "normals", "uvs", "material"};
     static const char vertices[] = "three points: \"vertices\": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(node, "vertices", vertices, err));
@@ -149,6 +149,56 @@ static BpStatus parse_normals(const BpNode *list, BpScene *scene, BpError *err) 
     return BP_OK;
 }
 
+/* ---- texture coordinates ---- */
+
+/* The same. */
+static BpStatus parse_coordinates(const BpNode *list, BpScene *scene, BpError *err) {
+    static const char expected[] = "three pairs of numbers: \"uvs\": [[0, 0], [1, 0], [0, 1]]";
+    for (size_t i = 0; i < scene->triangle_count; i++) {
+        const BpNode element = bp_node_element(list, i), uvs = bp_node_member(&element, "uvs");
+        if (uvs.value == NULL) continue;
+        if (json_array_size(uvs.value) != 3) return bp_node_wrong(&uvs, expected, err);
+        BP_TRY(bp_scene_make_coordinates(scene, scene->triangle_count, err));
+        for (size_t k = 0; k < 6; k++) {
+            const BpNode pair = bp_node_element(&uvs, k / 2);
+            if (json_array_size(pair.value) != 2) return bp_node_wrong(&uvs, expected, err);
+            const BpNode number = bp_node_element(&pair, k % 2);
+            double value = 0;
+            BP_TRY(bp_node_number(&number, &value, err));
+            if (!(fabs(value) <= BP_UV_MAX)) return bp_node_wrong(&number, "a number from -1e6 to 1e6", err);
+            scene->coordinates[i][k] = (float)value;
+        }
+    }
+    return BP_OK;
+}
+
+/* A square of two triangles, of which the first has corners 0, 1 and 2 and the second 0, 2 and 3; u and v are
+ * 0 at the corner `first`, and u grows from there to the next. */
+static BpStatus lay_square(BpScene *scene, size_t triangle, int first, BpError *err) {
+    static const int corners[2][3] = {{0, 1, 2}, {0, 2, 3}};
+    if (!bp_material_is_mapped(scene, &scene->materials[scene->triangles[triangle].material])) return BP_OK;
+    BP_TRY(bp_scene_make_coordinates(scene, scene->triangle_count, err));
+    for (size_t t = 0; t < 2; t++)
+        for (int k = 0; k < 3; k++) {
+            const int corner = (corners[t][k] - first + 4) % 4;
+            scene->coordinates[triangle + t][2 * k] = corner == 1 || corner == 2;
+            scene->coordinates[triangle + t][2 * k + 1] = corner >= 2;
+        }
+    return BP_OK;
+}
+
+/* Of quads, u runs along the side u and v along v. On a box they run so that each side shows the whole map,
+ * seen from outside: upright, y upwards, and on top and bottom x to the right. */
+static BpStatus lay_quads_and_boxes(BpScene *scene, size_t listed, BpError *err) {
+    static const int first[BP_BOX_TRIANGLES / 2] = {0, 3, 0, 1, 3, 0};
+    for (size_t i = 0; i < scene->quad_count; i++)
+        BP_TRY(lay_square(scene, listed + BP_QUAD_TRIANGLES * i, 0, err));
+    const size_t boxes = listed + BP_QUAD_TRIANGLES * scene->quad_count;
+    for (size_t i = 0; i < 6 * scene->box_count; i++)
+        BP_TRY(lay_square(scene, boxes + 2 * i, first[i % 6], err));
+    return BP_OK;
+}
+
 BpStatus bp_parse_triangles(const BpNode *root, const BpMaterialIndex *index, BpScene *scene, BpError *err) {
     const BpNode triangles = bp_node_member(root, "triangles"), quads = bp_node_member(root, "quads"),
                  boxes = bp_node_member(root, "boxes");
@@ -159,13 +209,15 @@ BpStatus bp_parse_triangles(const BpNode *root, const BpMaterialIndex *index, Bp
         "an object: { \"vertices\": ..., \"material\": ... }", 1, parse_triangle, index, scene, &listed,
         err));
     BP_TRY(parse_normals(&triangles, scene, err));
+    BP_TRY(parse_coordinates(&triangles, scene, err));
     BP_TRY(parse_list(&quads,
                       "a list of quads: [ { \"corner\": [0, 0, 0], \"u\": [1, 0, 0], \"v\": [0, 1, 0], "
                       "\"material\": ... } ]",
                       "an object: { \"corner\": ..., \"u\": ..., \"v\": ..., \"material\": ... }",
                       BP_QUAD_TRIANGLES, parse_quad, index, scene, &scene->quad_count, err));
-    return parse_list(&boxes,
+    BP_TRY(parse_list(&boxes,
                       "a list of boxes: [ { \"corners\": [[0, 0, 0], [1, 1, 1]], \"material\": ... } ]",
                       "an object: { \"corners\": ..., \"material\": ... }", BP_BOX_TRIANGLES, parse_box,
-                      index, scene, &scene->box_count, err);
+                      index, scene, &scene->box_count, err));
+    return lay_quads_and_boxes(scene, listed, err);
 }

@@ -6,7 +6,10 @@
  *
  * A quad is a corner and two sides, u and v, as in the book; its outside is where u x v points. A box is two
  * opposite corners, turned by `rotate` (degrees about x, then y, then z) and then moved by `translate`. A
- * vertex that triangles share is computed once, so it is the same in all of them, bit for bit. */
+ * vertex that triangles share is computed once, so it is the same in all of them, bit for bit.
+ *
+ * Texture coordinates of triangles are written beside them, those of quads and boxes follow from their sides;
+ * these have some only where a texture needs them. */
 #ifndef BP_FORMATS_SCENE_TRIANGLES_H
 #define BP_FORMATS_SCENE_TRIANGLES_H
 

@@ -433,6 +433,15 @@ static BpStatus put_triangles(FILE *out, const BpScene *scene, BpError *err) {
             if (k > 0) fputs(", ", out);
             put_floats(out, normals[k]);
         }
+        const float *const at = bp_triangle_coordinates(scene, i);
+        if (at != NULL) fputs("], \"uvs\": [", out);
+        for (int k = 0; k < 3 && at != NULL; k++) {
+            fputs(k > 0 ? ", [" : "[", out);
+            put_number(out, (double)at[2 * k]);
+            fputs(", ", out);
+            put_number(out, (double)at[2 * k + 1]);
+            fputc(']', out);
+        }
         fputs("], \"material\": ", out);
         BP_TRY(put_text(out, scene->materials[triangle->material].name, err));
         fputs(" }", out);

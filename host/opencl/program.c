@@ -100,6 +100,7 @@ static const struct {
     {"bsdf/fold.cl", IN_ALL},
     {"integrator/scene.cl", IN_ALL},
     {"texture/sphere_map.cl", IN_ALL},
+    {"texture/triangle_map.cl", IN_ALL},
     {"texture/image.cl", IN_ALL},
     {"light/environment.cl", IN_ALL},
     {"light/lamps.cl", IN_ALL},

@@ -362,6 +362,17 @@ static bool explain_smooth_normals(const BpScene *scene, size_t size, char *reas
     return smooth > 0;
 }
 
+/* Whether a texture lies on a triangle. */
+static bool explain_coordinates(const BpScene *scene, size_t size, char *reason) {
+    const size_t mapped = bp_scene_mapped_triangles(scene);
+    if (mapped == 0)
+        snprintf(reason, size, "no texture lies on triangles");
+    else
+        snprintf(reason, size, "%zu of %zu triangle%s %s a texture laid on %s", mapped, scene->triangle_count,
+                 bp_plural(scene->triangle_count), mapped == 1 ? "has" : "have", mapped == 1 ? "it" : "them");
+    return mapped > 0;
+}
+
 /* Whether a path carries exactly as much after it has met a shape as before. */
 static bool passes_all(const BpScene *scene, size_t shape) {
     const BpMaterial *material = &scene->materials[bp_shape_material(scene, shape)];
@@ -432,6 +443,8 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
         effects->bits |= 1u << BP_EFFECT_TRIANGLE_LAMPS;
     if (explain_smooth_normals(scene, size, effects->reason[BP_EFFECT_SMOOTH_NORMALS]))
         effects->bits |= 1u << BP_EFFECT_SMOOTH_NORMALS;
+    if (explain_coordinates(scene, size, effects->reason[BP_EFFECT_TEXTURE_COORDINATES]))
+        effects->bits |= 1u << BP_EFFECT_TEXTURE_COORDINATES;
     if (explain_capsules(scene, size, effects->reason[BP_EFFECT_CAPSULES]))
         effects->bits |= 1u << BP_EFFECT_CAPSULES;
     effects->triangles_alone = scene->triangle_count > 0 && scene->sphere_count + scene->capsule_count == 0;

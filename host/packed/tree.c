@@ -242,6 +242,7 @@ BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTre
     *tree = (BpTree){.width = width, .single_precision = options->single_precision, .own_slot = NO_SLOT};
     tree->has_motions = options->motions || scene->moving_count > 0;
     tree->has_normals = scene->normal_count > 0;
+    tree->has_coordinates = bp_scene_mapped_triangles(scene) > 0;
     tree->has_axes = options->axes || scene->capsule_count > 0;
     if (width != 2 && width != 4 && width != 8 && width != 16)
         return bp_fail(err, BP_ERR_LIMIT, "a tree is 2, 4, 8 or 16 wide, not %u", width);
@@ -269,6 +270,7 @@ void bp_tree_clear(BpTree *tree) {
     free(tree->slot_sphere);
     free(tree->triangles);
     free(tree->triangle_normals);
+    free(tree->triangle_coordinates);
     free(tree->leaf_motions);
     free(tree->leaf_axes);
     *tree = (BpTree){0};

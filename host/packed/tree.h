@@ -39,11 +39,13 @@ typedef struct BpTree {
     /* A leaf holds shapes of one kind. Those from `first_triangles` on hold triangles, the others spheres, of
      * which capsules are some, with an axis; their index is after that of all triangles. */
     uint32_t first_triangles;
-    uint32_t triangle_leaves; /* leaf_count - first_triangles */
-    void *triangles;          /* triangle_leaves * TRIANGLE_REALS(width) reals */
-    uint32_t normal_leaves;   /* triangle_leaves, or 0 where no triangle is smooth */
-    void *triangle_normals;   /* normal_leaves * TRIANGLE_REALS(width) reals */
-    bool has_motions, has_normals;
+    uint32_t triangle_leaves;   /* leaf_count - first_triangles */
+    void *triangles;            /* triangle_leaves * TRIANGLE_REALS(width) reals */
+    uint32_t normal_leaves;     /* triangle_leaves, or 0 where no triangle is smooth */
+    void *triangle_normals;     /* normal_leaves * TRIANGLE_REALS(width) reals */
+    uint32_t coordinate_leaves; /* triangle_leaves, or 0 where no texture lies on a triangle */
+    void *triangle_coordinates; /* coordinate_leaves * COORDINATE_REALS(width) reals */
+    bool has_motions, has_normals, has_coordinates;
     uint32_t motion_leaves; /* first_triangles, or 0 where there are no motions */
     void *leaf_motions;     /* motion_leaves * MOTION_REALS(width) reals */
     bool has_axes;

@@ -490,6 +490,21 @@ static void write_normals(const BpTreeWriter *writer, uint32_t leaf, const BpTre
     }
 }
 
+/* Zeros where a triangle has none. */
+static void write_coordinates(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
+                              uint32_t count) {
+    BpTree *tree = writer->tree;
+    const uint32_t width = tree->width;
+    const size_t base = (size_t)(leaf - tree->first_triangles) * COORDINATE_REALS(width);
+    for (uint32_t lane = 0; lane < width; ++lane) {
+        const float *const coordinates =
+            lane < count ? bp_triangle_coordinates(writer->scene, items[lane].sphere) : NULL;
+        for (uint32_t k = 0; k < 6; ++k)
+            bp_reals_store(tree->triangle_coordinates, tree->single_precision, base + k * width + lane,
+                           coordinates != NULL ? (double)coordinates[k] : 0);
+    }
+}
+
 /* Narrowed first, vertices are exact; a lane without a triangle has NaN. Widened by two units in the last
  * place of a plane, so that a box without thickness has some, and by 8 of the longest side, since a hit may
  * lie that far off in single precision. */
@@ -525,6 +540,7 @@ BpBounds bp_tree_write_triangles(const BpTreeWriter *writer, uint32_t leaf, cons
             lane < count ? (uint32_t)writer->scene->sphere_count + items[lane].sphere : NO_SPHERE;
     }
     if (tree->has_normals) write_normals(writer, leaf, items, count);
+    if (tree->has_coordinates) write_coordinates(writer, leaf, items, count);
     return box;
 }
 
@@ -560,6 +576,11 @@ BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError
         tree->normal_leaves = tree->triangle_leaves;
         tree->triangle_normals = bp_own_pages(tree->normal_leaves * (size_t)TRIANGLE_REALS(width), real_size);
     }
+    if (tree->has_coordinates) {
+        tree->coordinate_leaves = tree->triangle_leaves;
+        tree->triangle_coordinates =
+            bp_own_pages(tree->coordinate_leaves * (size_t)COORDINATE_REALS(width), real_size);
+    }
     tree->leaves = bp_own_pages(s * LEAF_REALS(width), real_size);
     tree->slot_sphere = bp_own_pages(l * width, sizeof *tree->slot_sphere);
     if (tree->has_motions) {
@@ -574,7 +595,8 @@ BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError
         tree->slot_sphere != NULL && (tree->leaf_motions != NULL || !tree->has_motions) &&
         (tree->leaf_axes != NULL || !tree->has_axes) &&
         (tree->triangles != NULL || tree->triangle_leaves == 0) &&
-        (tree->triangle_normals != NULL || tree->normal_leaves == 0))
+        (tree->triangle_normals != NULL || tree->normal_leaves == 0) &&
+        (tree->triangle_coordinates != NULL || tree->coordinate_leaves == 0))
         return BP_OK;
     return bp_fail(err, BP_ERR_MEMORY, "out of memory for a tree of %u leaves and %u nodes", leaves, nodes);
 }

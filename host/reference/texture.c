@@ -1,4 +1,4 @@
-/* texture.c: what a texture is at a point of a sphere; see trace.h.
+/* texture.c: what a texture is at a point of a sphere or a triangle; see trace.h.
  *
  * From the definitions (scenes/README.md), with the library's functions of angles, in the scene's own
  * coordinates. */
@@ -29,6 +29,28 @@ static void map_of(const BpTexture *texture, Vec radial, double *u, double *v) {
     *v = acos(fmax(-1, fmin(1, -p.y))) / PI;
 }
 
+/* ---- triangles ---- */
+
+/* The shares of the second and the third vertex are those by which the edges from the first lead closest to
+ * the point: by the normal equations of least squares. */
+static bool coordinates_of(const BpScene *scene, const Hit *hit, double *u, double *v) {
+    if (hit->triangle == NULL) return false;
+    const float *const at = bp_triangle_coordinates(scene, (size_t)(hit->triangle - scene->triangles));
+    if (at == NULL) return false;
+    const Vec first = vec(hit->triangle->vertices[0]), one = sub(vec(hit->triangle->vertices[1]), first),
+              two = sub(vec(hit->triangle->vertices[2]), first), way = sub(hit->point, first);
+    const double aa = dot(one, one), ab = dot(one, two), bb = dot(two, two);
+    const double pa = dot(way, one), pb = dot(way, two), all = aa * bb - ab * ab;
+    const double shares[3] = {1 - (pa * (bb - ab) + pb * (aa - ab)) / all, (pa * bb - pb * ab) / all,
+                              (pb * aa - pa * ab) / all};
+    *u = *v = 0;
+    for (int k = 0; k < 3; ++k) {
+        *u += shares[k] * (double)at[2 * k];
+        *v += shares[k] * (double)at[2 * k + 1];
+    }
+    return true;
+}
+
 static bool is_odd(double number) {
     return fmod(number, 2) != 0;
 }
@@ -41,7 +63,8 @@ static size_t wrapped_around(double number, uint32_t count) {
     return (size_t)(rest < 0 ? rest + count : rest);
 }
 
-/* The texel at a column and a row, whole numbers that may lie outside; `rows`: of all repetitions. */
+/* The texel at a column and a row, whole numbers that may lie outside; `rows`: of all repetitions, beyond
+ * which the nearest one counts. */
 static Vec texel(const BpImage *image, double column, double row, double rows, bool clamped) {
     const size_t x =
         clamped ? (size_t)fmin(fmax(column, 0), image->width - 1.0) : wrapped_around(column, image->width);
@@ -63,11 +86,18 @@ static Vec bilinear(const BpImage *image, double x, double y, double rows, bool 
     return sum;
 }
 
-static Vec pictured(const BpTexture *texture, Vec radial) {
+static Vec pictured(const BpScene *scene, const BpTexture *texture, const Hit *hit) {
     const BpImage *image = texture->image;
-    const double rows = (double)image->height * texture->repeat[1];
+    double rows = (double)image->height * texture->repeat[1];
     double u, v;
-    map_of(texture, radial, &u, &v);
+    if (coordinates_of(scene, hit, &u, &v)) {
+        const double columns = (double)image->width * texture->repeat[0];
+        if (texture->wrap == BP_WRAP_CLAMP) return bilinear(image, u * columns, (1 - v) * rows, rows, true);
+        /* Far from both edges of a strip that has no end. */
+        const double upwards = v - floor(v);
+        return bilinear(image, u * columns, (2 - upwards) * rows, 3 * rows, false);
+    }
+    map_of(texture, hit->radial, &u, &v);
     return bilinear(image, u * texture->repeat[0] * image->width, (1 - v) * rows, rows,
                     texture->wrap == BP_WRAP_CLAMP);
 }
@@ -87,15 +117,18 @@ static Vec in_lattice(const BpTexture *texture, Vec point) {
     return scale(1 / texture->size, sub(point, vec(texture->origin)));
 }
 
-static Vec checker(const BpTexture *texture, Vec point, Vec radial) {
+static Vec checker(const BpScene *scene, const BpTexture *texture, const Hit *hit) {
     bool odd;
     if (texture->mapping == BP_MAPPING_SURFACE) {
         double u, v;
-        map_of(texture, radial, &u, &v);
+        if (coordinates_of(scene, hit, &u, &v))
+            return vec(texture->colors[is_odd(floor(u * 2 * texture->repeat[0])) !=
+                                       is_odd(floor(v * 2 * texture->repeat[1]))]);
+        map_of(texture, hit->radial, &u, &v);
         odd = is_odd(floor(u * 2 * texture->repeat[0])) !=
               is_odd(fmin(floor(v * 2 * texture->repeat[1]), 2.0 * texture->repeat[1] - 1));
     } else {
-        const Vec place = in_lattice(texture, point);
+        const Vec place = in_lattice(texture, hit->point);
         odd = is_odd(floor(place.x)) != is_odd(floor(place.y));
         odd = odd != is_odd(floor(place.z));
     }
@@ -178,11 +211,11 @@ Vec bp_ref_varied(const BpScene *scene, const Hit *hit, BpMember member, const d
     const BpTexture *texture = &scene->textures[number - 1];
     switch (texture->type) {
     case BP_TEXTURE_CHECKER:
-        return checker(texture, hit->point, hit->radial);
+        return checker(scene, texture, hit);
     case BP_TEXTURE_NOISE:
         return noisy(texture, hit->point);
     case BP_TEXTURE_IMAGE:
-        return pictured(texture, hit->radial);
+        return pictured(scene, texture, hit);
     }
     return vec(constant); /* not reached */
 }

@@ -55,6 +55,8 @@ BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err) 
         BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &worker->first_triangles, err));
         if (worker->has_normals)
             BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &worker->normal_leaves, err));
+        if (worker->has_coordinates)
+            BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &worker->coordinate_leaves, err));
         BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &worker->coloured_slots, err));
     }
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i)
@@ -142,12 +144,16 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, BpPacked *given, const BpWor
     made->first_leaves = packed->tree.first_leaves;
     made->first_triangles = packed->tree.first_triangles;
     made->normal_leaves = packed->tree.normal_leaves;
+    made->coordinate_leaves = packed->tree.coordinate_leaves;
     made->coloured_slots = packed->coloured_slots;
     made->leaf_count = packed->tree.leaf_count;
     made->has_lamps = bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS);
     made->has_triangles = bp_effects_has(setup->program.effects, BP_EFFECT_TRIANGLES);
     made->has_normals =
         made->has_triangles && bp_effects_has(setup->program.effects, BP_EFFECT_SMOOTH_NORMALS);
+    made->has_coordinates = made->has_triangles &&
+                            bp_effects_has(setup->program.effects, BP_EFFECT_TEXTURES) &&
+                            bp_effects_has(setup->program.effects, BP_EFFECT_TEXTURE_COORDINATES);
     made->has_capsules = bp_effects_has(setup->program.effects, BP_EFFECT_CAPSULES);
     BpStatus status = BP_OK;
     made->device = setup->device;

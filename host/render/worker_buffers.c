@@ -65,7 +65,7 @@ static void list_uploads(const BpWorker *worker, const BpPacked *packed, Upload 
     const uint64_t slots = leaf_count * width, colours = packed->colour_count,
                    motion_leaves = tree->motion_leaves, axis_leaves = tree->axis_leaves;
     const uint64_t triangle_leaves = tree->triangle_leaves, sphere_leaves = leaf_count - triangle_leaves;
-    const uint64_t normal_leaves = tree->normal_leaves;
+    const uint64_t normal_leaves = tree->normal_leaves, coordinate_leaves = tree->coordinate_leaves;
     const uint64_t lamp_nodes = packed->lamps.node_count, lamp_slots = packed->lamps.slot_count;
     const uint64_t disc_count = packed->disc_count, texture_count = packed->texture_count;
     const uint64_t texel_count = packed->texel_count, sky_row_count = packed->sky_row_count;
@@ -92,7 +92,8 @@ static void list_uploads(const BpWorker *worker, const BpPacked *packed, Upload 
     const Upload list[BP_SCENE_ARRAYS] = {
         SCENE_ARRAYS_OF_PACK(OF_PACK) SCENE_ARRAYS_OF_FOCUSERS(OF_FOCUSERS) SCENE_ARRAYS_OF_SLOTS(OF_SLOTS)
             SCENE_ARRAYS_OF_LAMPS(OF_LAMPS) SCENE_ARRAYS_OF_TREE(OF_TREE) SCENE_ARRAYS_OF_CAPSULES(OF_TREE)
-                SCENE_ARRAYS_OF_TRIANGLES(OF_TREE) SCENE_ARRAYS_OF_NORMALS(OF_TREE)};
+                SCENE_ARRAYS_OF_TRIANGLES(OF_TREE) SCENE_ARRAYS_OF_NORMALS(OF_TREE)
+                    SCENE_ARRAYS_OF_COORDINATES(OF_TREE)};
     memcpy(uploads, list, sizeof list);
 }
 
@@ -140,11 +141,13 @@ static BpStatus upload_parts(BpWorker *worker, const Upload *upload, BpError *er
 BpStatus bp_worker_upload_scene(BpWorker *worker, BpError *err) {
     Upload uploads[BP_SCENE_ARRAYS];
     list_uploads(worker, &worker->packed, uploads);
-    const size_t normals = BP_SCENE_ARRAYS - BP_NORMAL_ARRAYS, triangles = normals - BP_TRIANGLE_ARRAYS,
+    const size_t coordinates = BP_SCENE_ARRAYS - BP_COORDINATE_ARRAYS,
+                 normals = coordinates - BP_NORMAL_ARRAYS, triangles = normals - BP_TRIANGLE_ARRAYS,
                  capsules = triangles - BP_CAPSULE_ARRAYS;
     for (size_t i = 0; i < BP_SCENE_ARRAYS; ++i) {
         const Upload *upload = &uploads[i];
-        if (i >= normals     ? !worker->has_normals
+        if (i >= coordinates ? !worker->has_coordinates
+            : i >= normals   ? !worker->has_normals
             : i >= triangles ? !worker->has_triangles
                              : i >= capsules && !worker->has_capsules)
             continue;

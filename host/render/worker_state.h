@@ -48,10 +48,13 @@ enum {
     BP_SCENE_ARRAYS = SCENE_ARRAYS_OF_PACK(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_FOCUSERS(BP_COUNT_ARRAY)
         SCENE_ARRAYS_OF_SLOTS(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_LAMPS(BP_COUNT_ARRAY)
             SCENE_ARRAYS_OF_TREE(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_TRIANGLES(BP_COUNT_ARRAY)
-                SCENE_ARRAYS_OF_NORMALS(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_CAPSULES(BP_COUNT_ARRAY),
-    BP_NORMAL_ARRAYS = 0 SCENE_ARRAYS_OF_NORMALS(BP_COUNT_ARRAY),     /* the last */
-    BP_TRIANGLE_ARRAYS = 0 SCENE_ARRAYS_OF_TRIANGLES(BP_COUNT_ARRAY), /* before them */
-    BP_CAPSULE_ARRAYS = 0 SCENE_ARRAYS_OF_CAPSULES(BP_COUNT_ARRAY),   /* before those */
+                SCENE_ARRAYS_OF_NORMALS(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_COORDINATES(BP_COUNT_ARRAY)
+                    SCENE_ARRAYS_OF_CAPSULES(BP_COUNT_ARRAY),
+    /* The last, and those before them, one after the other: */
+    BP_COORDINATE_ARRAYS = 0 SCENE_ARRAYS_OF_COORDINATES(BP_COUNT_ARRAY),
+    BP_NORMAL_ARRAYS = 0 SCENE_ARRAYS_OF_NORMALS(BP_COUNT_ARRAY),
+    BP_TRIANGLE_ARRAYS = 0 SCENE_ARRAYS_OF_TRIANGLES(BP_COUNT_ARRAY),
+    BP_CAPSULE_ARRAYS = 0 SCENE_ARRAYS_OF_CAPSULES(BP_COUNT_ARRAY),
     BP_SCENE_BUFFERS_MAX = BP_SCENE_ARRAYS * SCENE_PARTS_MAX
 };
 
@@ -68,12 +71,14 @@ typedef struct BpWorker {
     cl_mem sums, fine_sums, counts, tallies, samples;
     cl_mem lamp_rays; /* of each work-item of a chunk; used only if the scene `has_lamps` */
     bool has_lamps;
-    bool has_triangles; /* the kernel knows them, and is given their arrays and numbers */
-    bool has_normals;   /* the same of the normals at their vertices */
-    bool has_capsules;  /* the same of their arrays */
-    cl_mem pixel_list;  /* NULL: chunks are ranges of pixels */
+    bool has_triangles;   /* the kernel knows them, and is given their arrays and numbers */
+    bool has_normals;     /* the same of the normals at their vertices */
+    bool has_coordinates; /* and of their texture coordinates */
+    bool has_capsules;    /* the same of their arrays */
+    cl_mem pixel_list;    /* NULL: chunks are ranges of pixels */
     size_t real_size;
-    uint32_t SCENE_NUMBERS(BP_SCENE_NUMBER_MEMBER) first_triangles, normal_leaves, coloured_slots, pixels;
+    uint32_t SCENE_NUMBERS(BP_SCENE_NUMBER_MEMBER) first_triangles, normal_leaves, coordinate_leaves,
+        coloured_slots, pixels;
     BpKernelForm form;
     uint32_t samples_per_item; /* pixel samples of a work-item, on average in the pool form */
     size_t local_size;

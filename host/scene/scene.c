@@ -171,6 +171,7 @@ void bp_scene_destroy(BpScene **scene) {
     free(s->spheres);
     free(s->triangles);
     free(s->normals);
+    free(s->coordinates);
     free(s->capsules);
     free(s->center_ends);
     free(s->interiors);
@@ -263,6 +264,35 @@ BpStatus bp_scene_make_normals(BpScene *scene, size_t count, BpError *err) {
     scene->normals = normals;
     scene->normal_count = count;
     return BP_OK;
+}
+
+BpStatus bp_scene_make_coordinates(BpScene *scene, size_t count, BpError *err) {
+    if (count <= scene->coordinate_count) return BP_OK;
+    float(*const coordinates)[6] = realloc(scene->coordinates, count * sizeof *coordinates);
+    if (coordinates == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the texture coordinates of %zu triangles",
+                       count);
+    for (size_t i = scene->coordinate_count; i < count; i++)
+        for (int k = 0; k < 6; k++) coordinates[i][k] = NAN;
+    scene->coordinates = coordinates;
+    scene->coordinate_count = count;
+    return BP_OK;
+}
+
+bool bp_material_is_mapped(const BpScene *scene, const BpMaterial *material) {
+    for (int m = 0; m < BP_MEMBER_COUNT; m++) {
+        const uint32_t number = material->texture[m];
+        if (number != 0 && scene->textures[number - 1].mapping == BP_MAPPING_SURFACE) return true;
+    }
+    return false;
+}
+
+size_t bp_scene_mapped_triangles(const BpScene *scene) {
+    size_t count = 0;
+    for (size_t i = 0; i < scene->coordinate_count; i++)
+        count += bp_triangle_coordinates(scene, i) != NULL &&
+                 bp_material_is_mapped(scene, &scene->materials[scene->triangles[i].material]);
+    return count;
 }
 
 const char *bp_capsule_name(const BpScene *scene, size_t capsule, char text[BP_SPHERE_NAME_SIZE]) {

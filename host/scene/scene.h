@@ -21,6 +21,7 @@
 #include "medium.h"
 #include "texture.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #define BP_PICTURE_SIDE_MAX 65535u
@@ -216,6 +217,10 @@ struct BpScene {
     float (*normals)[3][3]; /* of the first normal_count triangles: at the vertices, of unit length, on either
                                side; all 0: the triangle is flat */
     size_t normal_count;
+    float (
+        *coordinates)[6]; /* of the first coordinate_count triangles: u and v at one vertex after the other,
+                             by which textures lie on them, at most BP_UV_MAX either way; NaN: none */
+    size_t coordinate_count;
     BpCapsule *capsules;
     size_t capsule_count,
         listed_capsules;    /* those that are not listed come from "particles" and sets of lines */
@@ -320,6 +325,20 @@ static inline const float (*bp_triangle_normals(const BpScene *scene, size_t tri
 }
 /* Makes room for the normals of `count` triangles in all; those that are new are 0. BP_ERR_MEMORY. */
 BpStatus bp_scene_make_normals(BpScene *scene, size_t count, BpError *err);
+
+/* The texture coordinates at a triangle's vertices, six numbers; NULL: it has none. */
+static inline const float *bp_triangle_coordinates(const BpScene *scene, size_t triangle) {
+    if (triangle >= scene->coordinate_count || isnan(scene->coordinates[triangle][0])) return NULL;
+    return scene->coordinates[triangle];
+}
+/* Makes room for the texture coordinates of `count` triangles in all; those that are new have none.
+ * BP_ERR_MEMORY. */
+BpStatus bp_scene_make_coordinates(BpScene *scene, size_t count, BpError *err);
+
+/* Whether a texture of the material lies on surfaces, instead of filling space. */
+bool bp_material_is_mapped(const BpScene *scene, const BpMaterial *material);
+/* On how many triangles a texture lies. */
+size_t bp_scene_mapped_triangles(const BpScene *scene);
 
 /* "sphere", "triangle", "capsule", or "shape" where there are several kinds. */
 const char *bp_scene_noun(const BpScene *scene);

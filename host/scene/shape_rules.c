@@ -14,16 +14,12 @@ bool bp_glass_beside_media(const BpScene *scene, const BpMaterial *material, BpF
 
 bool bp_map_without_longitude(const BpScene *scene, const BpMaterial *material, BpFaultSubject subject,
                               const char *noun, BpFault *fault) {
-    for (int m = 0; m < BP_MEMBER_COUNT; m++) {
-        const uint32_t number = material->texture[m];
-        if (number != 0 && scene->textures[number - 1].mapping == BP_MAPPING_SURFACE)
-            return bp_fault_set(
-                fault, subject, "material",
-                "found a texture that is laid around spheres, expected one that fills space: %s have no "
-                "longitude; change its mapping to \"solid\", or the material",
-                noun);
-    }
-    return false;
+    return bp_material_is_mapped(scene, material) &&
+           bp_fault_set(
+               fault, subject, "material",
+               "found a texture that is laid around spheres, expected one that fills space: %s have no "
+               "longitude; change its mapping to \"solid\", or the material",
+               noun);
 }
 
 int bp_compare_points(const double a[3], const double b[3]) {

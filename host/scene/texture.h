@@ -5,7 +5,8 @@
  *
  * A checker has cells of two colours in turn. Solid, they are cubes of space, and the corner of one is
  * `origin`. Over a surface, they are fields between meridians and parallels of each sphere: the pattern, two
- * fields each way, repeats `repeat[0]` times around and `repeat[1]` times from pole to pole.
+ * fields each way, repeats `repeat[0]` times around and `repeat[1]` times from pole to pole. On a triangle
+ * it repeats as often in each unit of the texture coordinates u and v, which go on beyond 0 and 1.
  *
  * Noise is gradient noise (K. Perlin, "Improving Noise", 2002) in the same cubes: n(p), between -1 and 1 and
  * 0 at their corners. Its gradients come from a hash of the corner instead of a table, so it has no period
@@ -30,7 +31,11 @@
  * north pole. It is repeated repeat[0] times in longitude and repeat[1] times in latitude. A clamped image
  * appears only in the first of these places; to the right of it and below, the colours of its edges continue.
  * The middle of a texel has its colour; between the middles of four the colour is bilinear. Beyond the poles
- * and, clamped, beyond the image the nearest texel counts; around, the image is a ring. */
+ * and, clamped, beyond the image the nearest texel counts; around, the image is a ring.
+ *
+ * On a triangle its lower left corner is at u = v = 0 and its upper right one at u = v = 1, if it is not
+ * repeated, and it goes on in all directions, as a ring across and upwards. A clamped image appears only in
+ * the upper left of its places between 0 and 1. `up` and `turn` mean nothing there. */
 #ifndef BP_SCENE_TEXTURE_H
 #define BP_SCENE_TEXTURE_H
 
@@ -47,6 +52,7 @@ struct BpImage; /* image/texels.h */
 #define BP_OCTAVES_MAX 12u
 #define BP_DISTORTION_MAX 1000.0
 #define BP_LATTICE_PERIOD 4194304u /* 2^22 */
+#define BP_UV_MAX 1.0e6            /* texture coordinates */
 #define BP_COLUMNS_MAX 16777216u   /* 2^24: of an image's texels times its repeats, either way */
 
 typedef enum BpMapping { BP_MAPPING_SOLID, BP_MAPPING_SURFACE } BpMapping;

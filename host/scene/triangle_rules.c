@@ -37,6 +37,23 @@ static bool place_fault(const BpTriangle *triangle, BpFault *fault) {
         "least 1e-9 apart");
 }
 
+/* Textures that lie on surfaces lie on triangles by texture coordinates. */
+static bool map_fault(const BpScene *scene, size_t index, const BpMaterial *material, BpFault *fault) {
+    const float *const at = bp_triangle_coordinates(scene, index);
+    for (int k = 0; k < 6 && at != NULL; k++)
+        if (!(fabs((double)at[k]) <= BP_UV_MAX))
+            return bp_fault_set(fault, BP_FAULT_TRIANGLE, "uvs",
+                                "found texture coordinates beyond a million, expected numbers from -1e6 to "
+                                "1e6: whole numbers change nothing where textures repeat");
+    if (at != NULL || !bp_material_is_mapped(scene, material)) return false;
+    return bp_fault_set(
+        fault, BP_FAULT_TRIANGLE, "material",
+        "found a texture that lies on surfaces, but no texture coordinates, expected u and v at each vertex: "
+        "give \"uvs\", or write them to the file of the mesh (vt of OBJ, s and t of PLY, TEXCOORD_0 of "
+        "glTF); "
+        "or choose a texture that fills space (\"mapping\": \"solid\")");
+}
+
 static bool kind_fault(const BpScene *scene, size_t index, BpFault *fault) {
     const BpMaterial *material = &scene->materials[scene->triangles[index].material];
     if (material->kind == BP_MATERIAL_INTERFACE)
@@ -44,7 +61,7 @@ static bool kind_fault(const BpScene *scene, size_t index, BpFault *fault) {
                             "found the type \"interface\", expected another: media inside triangles are not "
                             "rendered yet; use a sphere as their boundary");
     return bp_glass_beside_media(scene, material, BP_FAULT_TRIANGLE, "triangles", fault) ||
-           bp_map_without_longitude(scene, material, BP_FAULT_TRIANGLE, "triangles", fault);
+           map_fault(scene, index, material, fault);
 }
 
 /* ---- glass is closed ---- */

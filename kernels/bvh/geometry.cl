@@ -4,15 +4,34 @@
 
 /* What a kernel that knows triangles is given of them, each followed by a comma. */
 #if SMOOTH_TRIANGLES
-#define TRIANGLES_PARAMETERS                                                                                           \
-    SCENE_ARRAYS_OF_TRIANGLES(SPLIT_PARAMETER) SCENE_ARRAYS_OF_NORMALS(SPLIT_PARAMETER) uint first_triangles, uint normal_leaves,
-#define TRIANGLES_ARGUMENTS                                                                                            \
-    SCENE_ARRAYS_OF_TRIANGLES(SPLIT_ARGUMENT) SCENE_ARRAYS_OF_NORMALS(SPLIT_ARGUMENT) first_triangles, normal_leaves,
-#elif EFFECT_TRIANGLES
-#define TRIANGLES_PARAMETERS SCENE_ARRAYS_OF_TRIANGLES(SPLIT_PARAMETER) uint first_triangles,
-#define TRIANGLES_ARGUMENTS SCENE_ARRAYS_OF_TRIANGLES(SPLIT_ARGUMENT) first_triangles,
+#define NORMALS_PARAMETERS SCENE_ARRAYS_OF_NORMALS(SPLIT_PARAMETER)
+#define NORMALS_ARGUMENTS SCENE_ARRAYS_OF_NORMALS(SPLIT_ARGUMENT)
+#define NORMALS_PARAMETER uint normal_leaves,
+#define NORMALS_ARGUMENT normal_leaves,
+#else
+#define NORMALS_PARAMETERS
+#define NORMALS_ARGUMENTS
+#define NORMALS_PARAMETER
+#define NORMALS_ARGUMENT
+#endif
+#if MAPPED_TRIANGLES
+#define COORDINATES_PARAMETERS SCENE_ARRAYS_OF_COORDINATES(SPLIT_PARAMETER)
+#define COORDINATES_ARGUMENTS SCENE_ARRAYS_OF_COORDINATES(SPLIT_ARGUMENT)
+#define COORDINATES_PARAMETER uint coordinate_leaves,
+#define COORDINATES_ARGUMENT coordinate_leaves,
+#else
+#define COORDINATES_PARAMETERS
+#define COORDINATES_ARGUMENTS
+#define COORDINATES_PARAMETER
+#define COORDINATES_ARGUMENT
 #endif
 #if EFFECT_TRIANGLES
+#define TRIANGLES_PARAMETERS                                                                                           \
+    SCENE_ARRAYS_OF_TRIANGLES(SPLIT_PARAMETER) NORMALS_PARAMETERS COORDINATES_PARAMETERS uint first_triangles,          \
+        NORMALS_PARAMETER COORDINATES_PARAMETER
+#define TRIANGLES_ARGUMENTS                                                                                            \
+    SCENE_ARRAYS_OF_TRIANGLES(SPLIT_ARGUMENT) NORMALS_ARGUMENTS COORDINATES_ARGUMENTS first_triangles, NORMALS_ARGUMENT \
+        COORDINATES_ARGUMENT
 #define WITH_SHEAR(shear) shear,
 #else
 #define TRIANGLES_PARAMETERS
@@ -41,6 +60,10 @@ typedef struct Geometry {
     SCENE_ARRAYS_OF_NORMALS(SPLIT_MEMBER)
     uint normal_leaves; /* 0: no triangle is smooth */
 #endif
+#if MAPPED_TRIANGLES
+    SCENE_ARRAYS_OF_COORDINATES(SPLIT_MEMBER)
+    uint coordinate_leaves; /* 0: no texture lies on a triangle */
+#endif
 #if EFFECT_CAPSULES
     SCENE_ARRAYS_OF_CAPSULES(SPLIT_MEMBER)
 #endif
@@ -60,6 +83,10 @@ static void geometry_init(SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) CAPSULES_PARAMET
 #if SMOOTH_TRIANGLES
     SCENE_ARRAYS_OF_NORMALS(SET_ARRAY)
     geometry->normal_leaves = normal_leaves;
+#endif
+#if MAPPED_TRIANGLES
+    SCENE_ARRAYS_OF_COORDINATES(SET_ARRAY)
+    geometry->coordinate_leaves = coordinate_leaves;
 #endif
 #if EFFECT_CAPSULES
     SCENE_ARRAYS_OF_CAPSULES(SET_ARRAY)

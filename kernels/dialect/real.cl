@@ -65,9 +65,12 @@ typedef REFINED refined;
 #else
 #define WITH_SPHERE(sphere)
 #endif
-/* Triangles may have normals at their vertices. Where a ray meets one is then known by its shares of two vertices. */
+/* Triangles may have normals and texture coordinates at their vertices. Where a ray meets one is then known by its shares of two
+ * vertices. */
 #define SMOOTH_TRIANGLES (EFFECT_TRIANGLES && EFFECT_SMOOTH_NORMALS)
-#if SMOOTH_TRIANGLES
+#define MAPPED_TRIANGLES (EFFECT_TRIANGLES && EFFECT_TEXTURES && EFFECT_TEXTURE_COORDINATES)
+#define SHARES_KNOWN (SMOOTH_TRIANGLES || MAPPED_TRIANGLES)
+#if SHARES_KNOWN
 #define WITH_SHARES(shares) shares,
 #else
 #define WITH_SHARES(shares)

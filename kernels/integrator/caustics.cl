@@ -188,7 +188,10 @@ static void trace_chain(const Scene *scene, Path *path, const ChainChoice *choic
         surface.enters = expected.enters;
         surface.normal = choose3(expected.enters, outward, scale3(splat(-1), outward));
 #if EFFECT_TEXTURES
-        if (leg == 0) vary_surface(scene, active, slot, &point, outward, &surface, &emitted);
+#if MAPPED_TRIANGLES
+        const MapPlace place = off_triangles();
+#endif
+        if (leg == 0) vary_surface(scene, active, slot, &point, WITH_PLACE(&place) outward, &surface, &emitted);
 #endif
         if (leg == 0) weight = surface.albedo;
         /* Reflected, but where the chain enters the ball or leaves it. */

@@ -191,12 +191,17 @@ static Vec3 radiance_along(const Scene *scene, const Ray *ray, const Sphere *sph
 #if SAMPLES_TRIANGLES
     Hit hit;
     hit.slot = slot;
-#if SMOOTH_TRIANGLES
+#if SHARES_KNOWN
     Shares shares;
 #endif
     surface_of_triangle(&scene->geometry, ray, &hit, visible, WITH_SHARES(&shares) &point, &outward);
 #endif
-    return vary_radiance(scene, slot, &point, outward, visible, radiance_of_sphere(scene, slot));
+#if MAPPED_TRIANGLES && SAMPLES_TRIANGLES
+    const MapPlace place = triangle_map(scene, slot, visible, &shares);
+#elif MAPPED_TRIANGLES
+    const MapPlace place = off_triangles();
+#endif
+    return vary_radiance(scene, slot, &point, WITH_PLACE(&place) outward, visible, radiance_of_sphere(scene, slot));
 }
 #elif SAMPLES_LAMP_TREE
 #define radiance_along(scene, ray, sphere, slot, visible) radiance_of_sphere(scene, slot)

@@ -1,7 +1,7 @@
 /* vertex.cl: the point where a ray meets a surface, with the surface as it is there.
  *
  * In:    rays and their hits.   Out: point, normal, material with its textures, and what it emits.
- * Knows: the shapes by one function each, fetch_surface.cl, smooth_surface.cl, vary_surface.cl.   Does not know: paths. */
+ * Knows: the shapes by one function each, fetch_surface.cl, smooth_surface.cl, triangle_map.cl, vary_surface.cl.   Does not know: paths. */
 typedef struct Vertex {
 #if SPHERES_MET
     Sphere sphere; /* of no meaning where a triangle was met */
@@ -17,7 +17,7 @@ static void vertex_init(const Scene *scene, const Ray *ray, const Hit *hit, vboo
 #if SPHERES_MET
     sphere_surface(ray, &vertex->sphere, hit->slot, hit->t, hit->enters, &vertex->point, &vertex->outward);
 #endif
-#if SMOOTH_TRIANGLES
+#if SHARES_KNOWN
     Shares shares;
 #endif
 #if EFFECT_TRIANGLES
@@ -29,5 +29,8 @@ static void vertex_init(const Scene *scene, const Ray *ray, const Hit *hit, vboo
 #if SMOOTH_TRIANGLES
     smooth_surface(scene, hit, met, &shares, surface);
 #endif
-    vary_surface(scene, met, hit->slot, &vertex->point, vertex->outward, surface, &vertex->emitted);
+#if MAPPED_TRIANGLES
+    const MapPlace place = triangle_map(scene, hit->slot, met, &shares);
+#endif
+    vary_surface(scene, met, hit->slot, &vertex->point, WITH_PLACE(&place) vertex->outward, surface, &vertex->emitted);
 }

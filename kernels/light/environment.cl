@@ -25,6 +25,9 @@ static Vec3 environment_radiance(const Scene *scene, Vec3 direction) {
     image.columns = splat(sky->columns);
     image.rows = splat(sky->rows);
     image.ring = vbool_all;
+#if MAPPED_TRIANGLES
+    image.rows_ring = vbool_none;
+#endif
     return image_colour(scene, &image, u * sky->columns, v * sky->rows);
 }
 

@@ -24,6 +24,7 @@
 #define triangle_surface LANED(triangle_surface)
 #define Shares LANED(Shares)
 #define triangle_shares LANED(triangle_shares)
+#define triangle_between LANED(triangle_between)
 #define TriangleView LANED(TriangleView)
 #define triangle_view LANED(triangle_view)
 
@@ -31,7 +32,7 @@ typedef struct Triangle {
     Vec3 a, b, c;
 } Triangle;
 
-#if SMOOTH_TRIANGLES
+#if SHARES_KNOWN
 typedef struct Shares {
     vreal b, c;
 } Shares;
@@ -92,7 +93,7 @@ FORCE_INLINE static vbool triangle_decide(const Shear *shear, const Triangle *tr
     return met;
 }
 
-#if SMOOTH_TRIANGLES
+#if SHARES_KNOWN
 /* By the areas between a point of the triangle and its sides. */
 static Shares triangle_shares(const Triangle *triangle, Vec3 point) {
     const Vec3 to_b = subtract3(triangle->b, triangle->a), to_c = subtract3(triangle->c, triangle->a);
@@ -105,12 +106,20 @@ static Shares triangle_shares(const Triangle *triangle, Vec3 point) {
 }
 #endif
 
+#if MAPPED_TRIANGLES
+static void triangle_between(const Shares *shares, vreal a, vreal b, vreal c, vreal *whole, vreal *rest) {
+    const vreal number = fma(shares->b, b - a, fma(shares->c, c - a, a));
+    *whole = floor(number);
+    *rest = number - *whole;
+}
+#endif
+
 FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triangle, WITH_SHARES(Shares *shares) Point *point,
                                           Vec3 *normal) {
     vreal t;
     vbool enters;
     triangle_meets(ray->origin.high, ray->direction, triangle, &t, &enters);
-#if SMOOTH_TRIANGLES
+#if SHARES_KNOWN
     *shares = triangle_shares(triangle, madd3(t, ray->direction, ray->origin.high));
 #endif
     point->high = madd3(t, ray->direction, ray->origin.high);

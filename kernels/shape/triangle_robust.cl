@@ -9,7 +9,8 @@
  *        triangle_intersect     the same, for every triangle
  *        triangle_beside_sphere the same, for a ray that leaves a sphere
  *        triangle_surface       the point that was met, as an origin for the next ray, and the outward unit normal; for
- *                               triangles with normals at their vertices the point's shares of these
+ *                               triangles with normals or coordinates at their vertices the point's shares of these
+ *        triangle_between       by these shares, a number between those at the vertices
  *        triangle_view          what a point sees of it, for rays to a triangle that emits
  * Knows: ray.cl, wide.cl.   Does not know: trees, materials. Read once for each number of lanes.
  *
@@ -34,6 +35,7 @@
 #define ROBUST_SHAPES 1
 #define Triangle LANED(Triangle)
 #define Shares LANED(Shares)
+#define triangle_between LANED(triangle_between)
 #define Shear LANED(Shear)
 #define Edges LANED(Edges)
 #define turn3 LANED(turn3)
@@ -66,10 +68,13 @@ typedef struct Triangle {
     Vec3 a, b, c;
 } Triangle;
 
-#if SMOOTH_TRIANGLES
+#if SHARES_KNOWN
 /* Of a point of a triangle: at least 0, at most 1 together; vertex a has the rest. */
 typedef struct Shares {
     vreal b, c;
+#if MAPPED_TRIANGLES
+    Wide of_b, of_c;
+#endif
 } Shares;
 #endif
 
@@ -371,11 +376,28 @@ FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triang
     const vreal size = fabs(point->high.x) + fabs(point->high.y) + fabs(point->high.z);
     point->error = fma(one_norm(to_b) + one_norm(to_c), splat(WIDE_POINT_ERROR), size * R(0x1p-45));
     *normal = wide_unit(wide_cross(to_b, to_c));
-#if SMOOTH_TRIANGLES
+#if SHARES_KNOWN
     shares->b = wide_near(of_b);
     shares->c = wide_near(of_c);
 #endif
+#if MAPPED_TRIANGLES
+    shares->of_b = of_b;
+    shares->of_c = of_c;
+#endif
 }
+
+#if MAPPED_TRIANGLES
+/* A number between those at the vertices, as a whole one and a rest from 0 to 1. Wide, since a triangle may span so many whole
+ * numbers that a real beside them holds no rest. */
+static void triangle_between(const Shares *shares, vreal a, vreal b, vreal c, vreal *whole, vreal *rest) {
+    const Wide by_b = wide_difference(b, a, splat(0)), by_c = wide_difference(c, a, splat(0));
+    const Wide number = wide_madd(shares->of_b, by_b, wide_madd(shares->of_c, by_c, wide(a)));
+    const vreal nearest = floor(wide_near(number)), above = wide_near(wide_add_real(number, -nearest));
+    const vbool rounded_up = above < splat(0);
+    *whole = choose(rounded_up, nearest - splat(1), nearest);
+    *rest = choose(rounded_up, above + splat(1), above);
+}
+#endif
 
 #if EFFECT_TRIANGLE_LAMPS
 #undef TRIANGLE_FLAT

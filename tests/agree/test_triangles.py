@@ -204,7 +204,7 @@ class Triangles(ScenePictures):
         self.refused(["boxes[1]", "boxes[0] and boxes[1] in one plane"],
                      boxes=[{**box, "material": "frosted"}, {"corners": [[1, 0, 0], [2, 1, 1]], "material": "white"}])
         self.refused(["quads[0].material", "interface", "use a sphere"], quads=[{**quad, "material": "skin"}])
-        self.refused(["quads[0].material", "solid"], quads=[{**quad, "material": "mapped"}])
+        self.refused(["triangles[0].material", "no texture coordinates", "solid"], triangles=[{"vertices": triangle, "material": "mapped"}])
         self.refused(["boxes[0].material", "media"], boxes=[box], media={"fog": {"scattering": [1, 1, 1]}})
         self.refused(["boxes[1]", "boxes[0] and boxes[1] in one plane", "millionth"],
                      boxes=[box, {"corners": [[1, 0, 0], [2, 1, 1]], "material": "glass"}])

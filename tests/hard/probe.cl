@@ -6,8 +6,10 @@
     const uint item = (uint)get_global_id(0);                                                                          \
     if (item >= count) return;
 
-/* Of a geometry of spheres alone, in a program that knows triangles, and perhaps normals at their vertices. */
-#if SMOOTH_TRIANGLES
+/* Of a geometry of spheres alone, in a program that knows triangles, and perhaps normals and coordinates at their vertices. */
+#if SMOOTH_TRIANGLES && MAPPED_TRIANGLES
+#define NO_TRIANGLES(leaf_count) 0, 0, 0, leaf_count, 0, 0,
+#elif SHARES_KNOWN
 #define NO_TRIANGLES(leaf_count) 0, 0, leaf_count, 0,
 #elif EFFECT_TRIANGLES
 #define NO_TRIANGLES(leaf_count) 0, leaf_count,
@@ -312,7 +314,7 @@ __kernel void probe_turns(SCENE_PARAMETERS uint count, __global const real *rays
         inward = dot3(vec3(directions[3 * item], directions[3 * item + 1], directions[3 * item + 2]), outward) < 0;
     }
 #endif
-#if SMOOTH_TRIANGLES
+#if SHARES_KNOWN
     Shares shares;
 #endif
     surface_of_triangle(&scene.geometry, &ray, &hit, 1, WITH_SHARES(&shares) &point, &outward);

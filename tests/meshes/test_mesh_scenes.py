@@ -240,7 +240,7 @@ class Meshes(ProgramTest):
                            ({"file": "cube.off", "materials": {"bark": "clay"}}, 'meshes[0].materials.bark: the file names no materials of faces'),
                            ({"file": "cube.off", "materials": {}}, "without a material of its own"),
                            ({"file": "cube.off", "material": "skin"}, "meshes[0].material: triangle 0 (from 0) of cube.off"),
-                           ({"file": "cube.off", "material": "mapped"}, "laid around spheres"),
+                           ({"file": "cube.off", "material": "mapped"}, "no texture coordinates"),
                            ({"file": "cube.off", "material": "clay", "translate": [2e9, 0, 0]}, "meshes[0]: triangle 0 (from 0) of cube.off"),
                            ("cube.off", "meshes[0]: found")):
             self.fail_with(2, "render", self.scene("s.json", mesh), says=[says])

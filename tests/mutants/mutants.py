@@ -1373,7 +1373,7 @@ MUTANTS = [
     Mutant("a coarse angle", "classic: an approximation that looks right",
            [patch(KERNEL, "R(0.073791808825216637)", "R(0.0738)")], [test("test_texture_map", "place_on_map_and_in_lattice")]),
     Mutant("a lamp's light everywhere the same", "this program: rays to lamps bring the brightest of its light",
-           [patch(KERNEL, "return vary_radiance(scene, slot, &point, outward, visible, radiance_of_sphere(scene, slot));",
+           [patch(KERNEL, "return vary_radiance(scene, slot, &point, WITH_PLACE(&place) outward, visible, radiance_of_sphere(scene, slot));",
                   "return radiance_of_sphere(scene, slot);")], [check("checker-light", 128)]),
     Mutant("fuzz everywhere the same", "this program: the largest fuzz for all of it",
            [patch(KERNEL, "surface->fuzz = choose(varies, at_most(value.x, splat(1)), surface->fuzz);", "(void)value.x;")],

@@ -23,7 +23,7 @@ typedef struct EffectsScene {
     BpMaterial materials[28];
     BpSphere spheres[48];
     BpTriangle triangles[4];
-    float normals[3][3][3];
+    float normals[3][3][3], coordinates[4][6];
     BpCapsule capsules[4];
     BpTexture textures[10];
     BpImage image, sky, light, *images[3];
@@ -55,7 +55,7 @@ static const CoveringRule effects_rules[] = {
     {EFFECT_BIT(MOTION), MATERIAL_EFFECTS},
     {EFFECT_BIT(NOISE), EFFECT_BIT(TEXTURES)},
     {EFFECT_BIT(IMAGES), EFFECT_BIT(TEXTURES)},
-    /* In these scenes they have the first material, which is matte or metal and whose texture fills space. */
+    /* In these scenes they have the first two materials, which are matte or metal. */
     {EFFECT_BIT(TRIANGLES), EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL)},
     {EFFECT_BIT(CAPSULES), EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL)},
     /* Rays are sent to them where they are sent to others, and there are some. */
@@ -63,6 +63,8 @@ static const CoveringRule effects_rules[] = {
     {EFFECT_BIT(TRIANGLE_LAMPS), EFFECT_BIT(LAMPS)},
     {EFFECT_BIT(TRIANGLE_LAMPS), EFFECT_BIT(EMISSION)},
     {EFFECT_BIT(SMOOTH_NORMALS), EFFECT_BIT(TRIANGLES)},
+    {EFFECT_BIT(TEXTURE_COORDINATES), EFFECT_BIT(TRIANGLES)},
+    {EFFECT_BIT(TEXTURE_COORDINATES), EFFECT_BIT(TEXTURES)},
     /* Of an image around it knows no light. */
     {EFFECT_BIT(SHADOW_CATCHER) | EFFECT_BIT(ENVIRONMENT), 0},
 };
@@ -243,8 +245,8 @@ static inline void effects_spheres(EffectsScene *made, bool tree) {
 }
 
 /* A folded wall of two triangles that share an edge and lie partly behind spheres, and two that cross each
- * other. The last one emits where one does, by a material without textures: those of other lamps lie around
- * spheres. */
+ * other. The last one emits where one does. Where textures lie on triangles they do on one of each pair and
+ * on what emits, beyond their first tile too; else all have materials whose textures fill space. */
 static inline void effects_triangles(EffectsScene *made, uint32_t bits) {
     static const double at[4][3][3] = {{{-4, -0.5, -6}, {0.5, -0.5, -5}, {0.5, 3, -5}},
                                        {{-4, -0.5, -6}, {0.5, 3, -5}, {-4, 3, -6}},
@@ -265,10 +267,22 @@ static inline void effects_triangles(EffectsScene *made, uint32_t bits) {
         made->scene.normals = made->normals;
         made->scene.normal_count = 3;
     }
+    static const float coordinates[4][6] = {
+        {0}, {-1.25f, 0.5f, 2.5f, 3.25f, -1, 2}, {0, 0, 1, 0, 0.5f, 1}, {0, -0.25f, 1.5f, 0, 0.5f, 1}};
+    const bool mapped = bp_effects_has(bits, BP_EFFECT_TEXTURE_COORDINATES);
+    if (mapped) {
+        memcpy(made->coordinates, coordinates, sizeof coordinates);
+        made->scene.coordinates = made->coordinates;
+        made->scene.coordinate_count = 4;
+        made->triangles[1].material = made->triangles[2].material = 1;
+    }
     if (!bp_effects_has(bits, BP_EFFECT_TRIANGLE_LAMPS)) return;
     made->triangles[3].material = (uint32_t)made->scene.material_count;
     BpMaterial *lamp = effects_material(made, BP_MATERIAL_DIFFUSE_LIGHT, 0, 0, 0);
     lamp->emit[0] = 4, lamp->emit[1] = 3, lamp->emit[2] = 0.5;
+    if (mapped)
+        effects_vary(made, made->triangles[3].material, BP_MEMBER_EMIT,
+                     bp_effects_has(bits, BP_EFFECT_IMAGES) ? 10 : 3);
 }
 
 /* One has no length, one crosses another, and one lies behind spheres. */
@@ -286,14 +300,15 @@ static inline void effects_capsules(EffectsScene *made) {
     }
 }
 
-/* Media in most of what light passes through, and around all in every fifth set. */
+/* Media in most of what light passes through, and around all in every fifth set that has light of its own:
+ * that of the sky does not come through. */
 static inline void effects_media(EffectsScene *made, uint32_t bits) {
     made->media[0] = (BpMedium){
         .name = (char *)"grey", .absorption = {0.5, 0.5, 0.5}, .scattering = {2, 2, 2}, .anisotropy = 0.4};
     made->media[1] = (BpMedium){.name = (char *)"ink", .absorption = {0, 1, 2}, .scattering = {0.5, 0, 3}};
     made->scene.media = made->media;
     made->scene.medium_count = 2;
-    made->scene.medium = bits % 5 == 0 ? 1 : 0;
+    made->scene.medium = bits % 5 == 0 && bp_effects_has(bits, BP_EFFECT_EMISSION) ? 1 : 0;
     made->scene.interiors = made->interiors;
     made->scene.interior_count = made->scene.sphere_count;
     for (size_t i = 0; i < made->scene.sphere_count; ++i)

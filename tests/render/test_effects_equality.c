@@ -111,9 +111,13 @@ static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOption
     worker->has_triangles = bp_effects_has(setup.program.effects, BP_EFFECT_TRIANGLES);
     worker->has_normals =
         worker->has_triangles && bp_effects_has(setup.program.effects, BP_EFFECT_SMOOTH_NORMALS);
+    worker->has_coordinates = worker->has_triangles &&
+                              bp_effects_has(setup.program.effects, BP_EFFECT_TEXTURES) &&
+                              bp_effects_has(setup.program.effects, BP_EFFECT_TEXTURE_COORDINATES);
     worker->has_capsules = bp_effects_has(setup.program.effects, BP_EFFECT_CAPSULES);
     worker->first_triangles = packed.tree.first_triangles;
     worker->normal_leaves = packed.tree.normal_leaves;
+    worker->coordinate_leaves = packed.tree.coordinate_leaves;
     worker->coloured_slots = packed.coloured_slots;
     worker->width = setup.width;
     worker->pixels = setup.width * setup.height;

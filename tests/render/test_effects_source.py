@@ -58,6 +58,7 @@ MARKS = {
     "CAUSTICS": [],  # FOCUSING
     "TRIANGLE_LAMPS": [],  # TOGETHER, SHINING
     "SMOOTH_NORMALS": [],  # TOGETHER
+    "TEXTURE_COORDINATES": [],  # TOGETHER
     "TRIANGLES": ["triangle_decide", "load_triangle", "first_triangles", "coloured_slots"],
     "CAPSULES": ["choose_ball", "capsule_is_candidate", "leaf_axes", "be_sphere"],
     "ROULETTE": ["roulette_chance"],
@@ -77,7 +78,9 @@ SHARED = {
 TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURES", "NOISE"},
             "image_texture": {"TEXTURES", "IMAGES"}, " TriangleView": {"TRIANGLES", "TRIANGLE_LAMPS"},
             "smooth_surface": {"TRIANGLES", "SMOOTH_NORMALS"}, "scatter_folded": {"TRIANGLES", "SMOOTH_NORMALS"},
-            "normal_leaves": {"TRIANGLES", "SMOOTH_NORMALS"}, "Shares": {"TRIANGLES", "SMOOTH_NORMALS"}}
+            "normal_leaves": {"TRIANGLES", "SMOOTH_NORMALS"},
+            **{mark: {"TRIANGLES", "TEXTURES", "TEXTURE_COORDINATES"}
+               for mark in ("triangle_map", "MapPlace", "map_place", "coordinate_leaves", "triangle_coordinates", "triangle_between", "rows_ring")}}
 # Code that needs LAMPS, something to be lit (IS_LIT of dialect/real.cl), and one of the effects named.
 NEEDING_OTHERS = {
     "choose_lamp": {"EMISSION"}, "lamp_hit_weight": {"EMISSION"}, "disc_importance": {"DISCS"}, "disc_hit_weight": {"DISCS"},
@@ -118,6 +121,9 @@ def complaints(path):
               for mark, names in SHARED.items() if (mark in text) != bool(names & effects)]
     found += [f"{path.name}: {mark!r} of {sorted(names)} {'is missing' if names <= effects else 'is there'}"
               for mark, names in TOGETHER.items() if (mark in text) != (names <= effects)]
+    shares = "TRIANGLES" in effects and ("SMOOTH_NORMALS" in effects or {"TEXTURES", "TEXTURE_COORDINATES"} <= effects)
+    if ("Shares" in text) != shares:
+        found.append(f"{path.name}: 'Shares' {'is missing' if shares else 'is there'}")
     for mark, sources in NEEDING_OTHERS.items():
         needed = "LAMPS" in effects and bool(LIT & effects) and bool(sources & effects)
         if (mark in text) != needed:
