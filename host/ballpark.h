@@ -221,6 +221,10 @@ typedef struct BpMeshSet {
     BpRows normal;   /* of vertices; 3 columns, of any length, zeros where one is missing: the mesh is smooth.
                         data   NULL: none */
     uint32_t smooth; /* 1: also without them, by those of its faces */
+    uint32_t uv_of_corners; /* 1: rows of uv are those of corners, three for each triangle, so that a vertex
+                               may have several */
+    BpRows uv; /* texture coordinates, of vertices; 2 columns, u and v, which grows upwards, from -1e6 to 1e6,
+                  kept as floats: by them textures lie on the mesh. data NULL: none */
 } BpMeshSet;
 
 /* Lines of one material, as arrays: capsules, with a radius and round ends, a sphere where both ends are in

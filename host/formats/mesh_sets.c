@@ -16,12 +16,14 @@ static const char *name_of(const BpMeshSet *set) {
 static BpStatus check_set(const BpMeshSet *set, BpError *err) {
     const bool whole = set->vertex_count == 0 || bp_rows_are_numbers(&set->vertex),
                cut = set->triangle_count == 0 || set->triangle != NULL;
-    const bool normals = set->normal.data == NULL || bp_rows_are_numbers(&set->normal);
-    if (!whole || !cut || !normals || (set->color.data != NULL && !bp_rows_are_numbers(&set->color)))
+    const bool normals = set->normal.data == NULL || bp_rows_are_numbers(&set->normal),
+               uv = set->uv.data == NULL || bp_rows_are_numbers(&set->uv);
+    if (!whole || !cut || !normals || !uv || (set->color.data != NULL && !bp_rows_are_numbers(&set->color)))
         return bp_fail(err, BP_ERR_USAGE, "%s: found no numbers for %s, expected some", name_of(set),
                        !whole     ? "vertices"
                        : !cut     ? "triangles"
                        : !normals ? "normals"
+                       : !uv      ? "texture coordinates"
                                   : "colours");
     if (set->vertex_count > BP_MESH_COUNT_MAX || set->triangle_count > BP_MESH_COUNT_MAX)
         return bp_fail(err, BP_ERR_SCENE, "%s: found more than %u vertices or triangles, expected fewer",
@@ -36,7 +38,10 @@ static BpStatus make_room(const BpMeshSet *set, BpMesh *mesh, BpError *err) {
         mesh->face_colors = malloc((set->triangle_count + 1) * sizeof *mesh->face_colors);
     if (set->normal.data != NULL)
         mesh->face_normals = malloc((set->triangle_count + 1) * sizeof *mesh->face_normals);
+    if (set->uv.data != NULL)
+        mesh->face_coordinates = malloc((set->triangle_count + 1) * sizeof *mesh->face_coordinates);
     if (mesh->positions != NULL && mesh->faces != NULL &&
+        (set->uv.data == NULL || mesh->face_coordinates != NULL) &&
         (set->color.data == NULL || mesh->face_colors != NULL) &&
         (set->normal.data == NULL || mesh->face_normals != NULL))
         return BP_OK;
@@ -68,6 +73,22 @@ static BpStatus read_normal(const BpMeshSet *set, size_t vertex, float normal[3]
     return BP_OK;
 }
 
+static BpStatus read_coordinates(const BpMeshSet *set, size_t t, float coordinates[6], BpError *err) {
+    const bool of_corners = set->uv_of_corners != 0;
+    for (size_t k = 0; k < 3; k++)
+        for (int a = 0; a < 2; a++) {
+            const size_t row = of_corners ? 3 * t + k : set->triangle[3 * t + k];
+            const double value = bp_rows_number(&set->uv, row, a);
+            if (!(fabs(value) <= BP_UV_MAX))
+                return bp_fail(err, BP_ERR_SCENE,
+                               "%s %zu (from 0) of %s: texture coordinates: found %g, expected numbers from "
+                               "-1e6 to 1e6",
+                               of_corners ? "triangle" : "vertex", of_corners ? t : row, name_of(set), value);
+            coordinates[2 * k + (size_t)a] = (float)value;
+        }
+    return BP_OK;
+}
+
 static BpStatus read_triangle(const BpMeshSet *set, size_t t, BpMesh *mesh, BpError *err) {
     const uint32_t *const corners = &set->triangle[3 * t];
     for (int k = 0; k < 3; k++)
@@ -86,6 +107,8 @@ static BpStatus read_triangle(const BpMeshSet *set, size_t t, BpMesh *mesh, BpEr
                              err));
     for (int k = 0; k < 3 && mesh->face_normals != NULL; k++)
         BP_TRY(read_normal(set, corners[k], mesh->face_normals[mesh->face_count][k], err));
+    if (mesh->face_coordinates != NULL)
+        BP_TRY(read_coordinates(set, t, mesh->face_coordinates[mesh->face_count], err));
     memcpy(mesh->faces[mesh->face_count++], corners, sizeof *mesh->faces);
     return BP_OK;
 }

@@ -152,8 +152,26 @@ static void put_normals(const BpMesh *mesh, size_t face, bool mirrored, const Bp
     }
 }
 
+/* Where a texture lies on the triangle. */
+static void put_coordinates(const BpMesh *mesh, size_t face, bool mirrored, BpScene *scene) {
+    float *const at = scene->coordinates[scene->triangle_count];
+    if (!bp_material_is_mapped(scene, &scene->materials[scene->triangles[scene->triangle_count].material]))
+        return;
+    for (int k = 0; k < 3; k++) {
+        const float *const own = &mesh->face_coordinates[face][2 * (mirrored && k > 0 ? 3 - k : k)];
+        memcpy(&at[2 * k], own, 2 * sizeof *own);
+    }
+}
+
+/* Whether a texture lies on any of its faces. */
+static bool is_mapped(const BpMesh *mesh, const BpMeshUse *use, const BpScene *scene) {
+    for (size_t f = 0; f < mesh->face_count && mesh->face_coordinates != NULL; f++)
+        if (bp_material_is_mapped(scene, &scene->materials[material_of(mesh, use, f)])) return true;
+    return false;
+}
+
 /* Returns how many were left out, since they have no area where they stand. */
-static size_t add_faces(const BpMesh *mesh, const BpMeshUse *use, bool colored, BpScene *scene,
+static size_t add_faces(const BpMesh *mesh, const BpMeshUse *use, bool colored, bool mapped, BpScene *scene,
                         size_t *colors_used) {
     const bool mirrored = bp_placement_mirrors(&use->placement);
     const size_t first = scene->triangle_count;
@@ -171,13 +189,14 @@ static size_t add_faces(const BpMesh *mesh, const BpMeshUse *use, bool colored, 
             ++*colors_used;
         }
         if (use->smooth) put_normals(mesh, f, mirrored, triangle, scene->normals[scene->triangle_count]);
+        if (mapped) put_coordinates(mesh, f, mirrored, scene);
         scene->triangle_count++;
     }
     return mesh->face_count - (scene->triangle_count - first);
 }
 
-static BpStatus add_note(const BpMesh *mesh, const BpMeshUse *use, bool own_normals, size_t left_out,
-                         size_t colors_used, BpScene *scene, BpError *err) {
+static BpStatus add_note(const BpMesh *mesh, const BpMeshUse *use, bool own_normals, bool mapped,
+                         size_t left_out, size_t colors_used, BpScene *scene, BpError *err) {
     char text[1024], vertices[32], triangles[32], out[32];
     const size_t added = mesh->face_count - left_out;
     size_t used = (size_t)snprintf(text, sizeof text, "%s vertices, %s triangle%s",
@@ -193,6 +212,9 @@ static BpStatus add_note(const BpMesh *mesh, const BpMeshUse *use, bool own_norm
     else if (own_normals)
         used += (size_t)snprintf(text + used, sizeof text - used,
                                  "; its normals are left out, \"smooth\": true shows them");
+    if (mesh->face_coordinates != NULL && !mapped)
+        used += (size_t)snprintf(text + used, sizeof text - used,
+                                 "; its texture coordinates are not used, since no texture lies on it");
     if (mesh->face_colors == NULL && mesh->vertex_colors != NULL && colors_used > 0)
         used += (size_t)snprintf(text + used, sizeof text - used,
                                  "; each triangle has the mean of the colours of its vertices");
@@ -214,6 +236,8 @@ BpStatus bp_mesh_add_triangles(BpMesh *mesh, const BpMeshUse *use, BpScene *scen
     for (size_t v = 0; v < mesh->vertex_count; v++) bp_place_point(&use->placement, mesh->positions[v]);
     const bool own = mesh->face_normals != NULL;
     BP_TRY(make_normals(mesh, use, scene, err));
-    const size_t left_out = add_faces(mesh, use, colored, scene, &colors_used);
-    return add_note(mesh, use, own, left_out, colors_used, scene, err);
+    const bool mapped = is_mapped(mesh, use, scene);
+    if (mapped) BP_TRY(bp_scene_make_coordinates(scene, scene->triangle_count + mesh->face_count, err));
+    const size_t left_out = add_faces(mesh, use, colored, mapped, scene, &colors_used);
+    return add_note(mesh, use, own, mapped, left_out, colors_used, scene, err);
 }

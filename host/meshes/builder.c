@@ -36,7 +36,9 @@ void mesh_builder_clear(MeshBuilder *builder) {
     free(builder->polygons);
     free(builder->corners);
     free(builder->normals);
-    free(builder->corner_normals);
+    free(builder->coordinates);
+    free(builder->normal_choices.of_corners);
+    free(builder->coordinate_choices.of_corners);
     names_clear(&builder->names);
     *builder = (MeshBuilder){0};
 }
@@ -153,14 +155,33 @@ BpStatus mesh_add_normal(MeshBuilder *builder, const double normal[3], bool with
     return BP_OK;
 }
 
-BpStatus mesh_choose_normal(MeshBuilder *builder, uint32_t normal, BpError *err) {
-    while (builder->corner_normal_count < builder->corner_count) {
-        BP_TRY(MAKE_ROOM(builder, builder->corner_normals, builder->corner_normal_capacity,
-                         builder->corner_normal_count, "corners", err));
-        builder->corner_normals[builder->corner_normal_count++] = MESH_NO_NORMAL;
-    }
-    builder->corner_normals[builder->corner_count - 1] = normal;
+BpStatus mesh_add_coordinates(MeshBuilder *builder, double u, double v, bool with_line, BpError *err) {
+    const bool is_place = fabs(u) <= MESH_UV_MAX && fabs(v) <= MESH_UV_MAX;
+    if (builder->coordinate_count == BP_MESH_COUNT_MAX)
+        return input_fail(builder->input, with_line, err,
+                          "found more than %u texture coordinates, expected fewer", BP_MESH_COUNT_MAX);
+    BP_TRY(MAKE_ROOM(builder, builder->coordinates, builder->coordinate_capacity, builder->coordinate_count,
+                     "texture coordinates", err));
+    builder->coordinates[builder->coordinate_count][0] = is_place ? (float)u : NAN;
+    builder->coordinates[builder->coordinate_count++][1] = is_place ? (float)v : NAN;
     return BP_OK;
+}
+
+static BpStatus choose(const MeshBuilder *builder, MeshChoices *choices, uint32_t number, BpError *err) {
+    while (choices->count < builder->corner_count) {
+        BP_TRY(MAKE_ROOM(builder, choices->of_corners, choices->capacity, choices->count, "corners", err));
+        choices->of_corners[choices->count++] = MESH_NO_NUMBER;
+    }
+    choices->of_corners[builder->corner_count - 1] = number;
+    return BP_OK;
+}
+
+BpStatus mesh_choose_normal(MeshBuilder *builder, uint32_t normal, BpError *err) {
+    return choose(builder, &builder->normal_choices, normal, err);
+}
+
+BpStatus mesh_choose_coordinates(MeshBuilder *builder, uint32_t coordinates, BpError *err) {
+    return choose(builder, &builder->coordinate_choices, coordinates, err);
 }
 
 BpStatus mesh_end_polygon(MeshBuilder *builder, uint32_t material, bool with_line, BpError *err) {
@@ -204,8 +225,8 @@ BpStatus mesh_find_material(MeshBuilder *builder, const char *name, uint32_t *nu
 typedef struct Finish {
     MeshBuilder *builder;
     PolygonCutter cutter;
-    size_t face_capacity, material_capacity, color_capacity, normal_capacity;
-    bool has_materials, has_colors, has_normals;
+    size_t face_capacity, material_capacity, color_capacity, normal_capacity, coordinate_capacity;
+    bool has_materials, has_colors, has_normals, has_coordinates;
     size_t begin;                    /* of the polygon's corners */
     size_t crossing, first_crossing; /* polygons that cross themselves */
     size_t placeless;                /* polygons that have a vertex without a place */
@@ -218,23 +239,46 @@ static BpStatus fail_polygon(const Finish *f, size_t number, BpError *err, const
                       number + f->builder->first_index, f->builder->first_index, text);
 }
 
-/* The normals at the corners of a triangle that was cut from a polygon. */
+/* What the corners of a triangle that was cut from a polygon have. */
+static void find_chosen(const Finish *f, size_t number, const uint32_t *triangle, const MeshChoices *choices,
+                        uint32_t chosen[3]) {
+    const MeshBuilder *const b = f->builder;
+    const size_t count = b->polygons[number].corner_count;
+    for (size_t k = 0, at = 0; k < 3; k++) {
+        chosen[k] = triangle[k];
+        if (choices->of_corners == NULL) continue;
+        /* Triangles go around a polygon as its corners do, so the next one is near. */
+        while (b->corners[f->begin + at % count] != triangle[k]) at++;
+        const size_t corner = f->begin + at % count;
+        chosen[k] = corner < choices->count ? choices->of_corners[corner] : MESH_NO_NUMBER;
+    }
+}
+
 static BpStatus add_normals(Finish *f, size_t number, const uint32_t *triangle, BpError *err) {
     MeshBuilder *const b = f->builder;
     BpMesh *const mesh = b->mesh;
-    const size_t count = b->polygons[number].corner_count;
+    uint32_t normals[3];
     BP_TRY(MAKE_ROOM(b, mesh->face_normals, f->normal_capacity, mesh->face_count, "faces", err));
-    for (size_t k = 0, at = 0; k < 3; k++) {
-        uint32_t normal = triangle[k];
-        if (b->corner_normals != NULL) {
-            /* Triangles go around a polygon as its corners do, so the next one is near. */
-            while (b->corners[f->begin + at % count] != triangle[k]) at++;
-            const size_t corner = f->begin + at % count;
-            normal = corner < b->corner_normal_count ? b->corner_normals[corner] : MESH_NO_NORMAL;
-        }
+    find_chosen(f, number, triangle, &b->normal_choices, normals);
+    for (int k = 0; k < 3; k++)
         for (int a = 0; a < 3; a++)
-            mesh->face_normals[mesh->face_count][k][a] = normal < b->normal_count ? b->normals[normal][a] : 0;
-    }
+            mesh->face_normals[mesh->face_count][k][a] =
+                normals[k] < b->normal_count ? b->normals[normals[k]][a] : 0;
+    return BP_OK;
+}
+
+static BpStatus add_coordinates(Finish *f, size_t number, const uint32_t *triangle, BpError *err) {
+    MeshBuilder *const b = f->builder;
+    BpMesh *const mesh = b->mesh;
+    uint32_t chosen[3];
+    bool is_missing = false;
+    BP_TRY(MAKE_ROOM(b, mesh->face_coordinates, f->coordinate_capacity, mesh->face_count, "faces", err));
+    float *const face = mesh->face_coordinates[mesh->face_count];
+    find_chosen(f, number, triangle, &b->coordinate_choices, chosen);
+    for (int k = 0; k < 3; k++)
+        is_missing |= chosen[k] >= b->coordinate_count || isnan(b->coordinates[chosen[k]][0]);
+    for (int k = 0; k < 3; k++)
+        for (int a = 0; a < 2; a++) face[2 * k + a] = is_missing ? NAN : b->coordinates[chosen[k]][a];
     return BP_OK;
 }
 
@@ -255,6 +299,7 @@ static BpStatus add_face(Finish *f, size_t number, const uint32_t *triangle, BpE
                sizeof *mesh->face_colors);
     }
     if (f->has_normals) BP_TRY(add_normals(f, number, triangle, err));
+    if (f->has_coordinates) BP_TRY(add_coordinates(f, number, triangle, err));
     BP_TRY(MAKE_ROOM(b, mesh->faces, f->face_capacity, mesh->face_count, "faces", err));
     memcpy(mesh->faces[mesh->face_count++], triangle, sizeof *mesh->faces);
     return BP_OK;
@@ -355,6 +400,7 @@ BpStatus mesh_finish(MeshBuilder *builder, BpError *err) {
     BP_TRY(finish_colors(builder, &builder->vertex_colors, mesh->vertex_count, "vertex", "vertices", err));
     BP_TRY(finish_colors(builder, &builder->polygon_colors, builder->polygon_count, "face", "faces", err));
     finish.has_normals = builder->normal_count > 0;
+    finish.has_coordinates = builder->coordinate_count > 0;
     finish.has_colors = builder->polygon_colors.count > builder->polygon_colors.missing;
     if (builder->vertex_colors.count > builder->vertex_colors.missing) {
         mesh->vertex_colors = builder->vertex_colors.values;

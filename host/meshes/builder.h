@@ -15,7 +15,9 @@
 
 #include <math.h>
 
-#define MESH_NO_NORMAL UINT32_MAX
+#define MESH_NO_NUMBER UINT32_MAX
+/* Of texture coordinates, either way: those beyond are missing. */
+#define MESH_UV_MAX 1.0e6
 
 typedef struct MeshPolygon {
     uint32_t corner_count, material; /* BP_MESH_NO_MATERIAL: none */
@@ -28,6 +30,13 @@ typedef struct MeshColors {
     size_t count, capacity, missing;
     ColorRange range;
 } MeshColors;
+
+/* Which of a file's normals, or of its texture coordinates, the first corners have, or MESH_NO_NUMBER; those
+ * behind have none. Without any, each vertex has what is of its own number. */
+typedef struct MeshChoices {
+    uint32_t *of_corners;
+    size_t count, capacity;
+} MeshChoices;
 
 typedef struct MeshBuilder {
     Input *input;
@@ -45,9 +54,9 @@ typedef struct MeshBuilder {
         polygon_begin;   /* where the corners of the polygon being made begin */
     float (*normals)[3]; /* of vertices, or as many as a file lists */
     size_t normal_count, normal_capacity;
-    uint32_t *corner_normals; /* of the first corners: into normals, or MESH_NO_NORMAL; those behind have
-                                 none. NULL: each vertex has the normal of its own number */
-    size_t corner_normal_count, corner_normal_capacity;
+    float (*coordinates)[2]; /* the same of texture coordinates; NaN: missing */
+    size_t coordinate_count, coordinate_capacity;
+    MeshChoices normal_choices, coordinate_choices;
     BpNames names; /* of materials: number n is material n - 1 */
     size_t material_capacity;
 } MeshBuilder;
@@ -77,6 +86,9 @@ BpStatus mesh_add_normal(MeshBuilder *builder, const double normal[3], bool with
 /* The normal of the corner that was added last, counted from 0; it may follow, and if it does not, it is
  * missing. */
 BpStatus mesh_choose_normal(MeshBuilder *builder, uint32_t normal, BpError *err);
+/* The same of texture coordinates, u and v, which grows upwards. */
+BpStatus mesh_add_coordinates(MeshBuilder *builder, double u, double v, bool with_line, BpError *err);
+BpStatus mesh_choose_coordinates(MeshBuilder *builder, uint32_t coordinates, BpError *err);
 /* Ends it. */
 BpStatus mesh_end_polygon(MeshBuilder *builder, uint32_t material, bool with_line, BpError *err);
 /* The number of the material of that name, which is added where it is new; "" has BP_MESH_NO_MATERIAL. */

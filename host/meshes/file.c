@@ -174,5 +174,6 @@ void bp_mesh_clear(BpMesh *mesh) {
     free(mesh->vertex_colors);
     free(mesh->face_colors);
     free(mesh->face_normals);
+    free(mesh->face_coordinates);
     *mesh = (BpMesh){0};
 }

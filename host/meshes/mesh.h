@@ -49,8 +49,10 @@ typedef struct BpMesh {
     float (*vertex_colors)[3], (*face_colors)[3];
     float (*face_normals)[3][3]; /* Optional: at the corners of each face, as in the file: not of unit length,
                                     zeros where one is missing */
-    size_t polygons;             /* faces of the file with more than three corners, which were cut */
-    size_t dropped_degenerate;   /* triangles, whole or of polygons, without area or with a corner twice */
+    float (*face_coordinates)[6]; /* Optional: u and v, which grows upwards, at one corner of each face after
+                                     the other; NaN at all of them where one is missing */
+    size_t polygons;              /* faces of the file with more than three corners, which were cut */
+    size_t dropped_degenerate;    /* triangles, whole or of polygons, without area or with a corner twice */
     size_t welded;   /* vertices (of STL) that were equal to an earlier one, and became that one */
     char notes[480]; /* what was guessed or passed over: "3 lines left out; ..." */
 } BpMesh;

@@ -25,8 +25,14 @@ typedef struct Node {
 
 /* The accessors of one primitive; NO_NUMBER: it has none. */
 typedef struct Attributes {
-    long position, normal, color, joints, weights, material;
+    long position, normal, color, coordinates, joints, weights, material;
 } Attributes;
+
+/* How a material's base colour lies on its faces: by TEXCOORD_n, scaled, turned, moved. */
+typedef struct Map {
+    char attribute[24];
+    double offset[2], rotation, scale[2];
+} Map;
 
 typedef struct Gltf {
     MeshBuilder *builder;
@@ -35,8 +41,9 @@ typedef struct Gltf {
     size_t node_count, *order, order_count; /* nodes of the scene, parents before children */
     uint32_t *materials; /* the builder's number of each, and what they multiply colours by */
     double (*base_colors)[3];
+    Map *maps;
     size_t material_count;
-    bool has_normals, has_colors;
+    bool has_normals, has_colors, has_coordinates;
     size_t no_surfaces, morphs, translucent; /* primitives of points or lines; meshes with weights */
     Attributes last;                         /* whose vertices begin at `first_vertex`, of node `last_node` */
     size_t last_node, first_vertex, vertex_count;
@@ -214,6 +221,21 @@ static BpStatus name_material(Gltf *g, size_t number, const json_t *element, BpE
     return BP_OK;
 }
 
+/* The set of coordinates, and what KHR_texture_transform does to them. */
+static BpStatus read_map(const Gltf *g, const json_t *texture, const char *place, Map *map, BpError *err) {
+    const json_t *const transform = extension_of(texture, "KHR_texture_transform");
+    size_t set = 0;
+    bool found = false;
+    *map = (Map){.scale = {1, 1}};
+    BP_TRY(gltf_whole(&g->data, texture, "texCoord", place, &found, &set, err));
+    BP_TRY(gltf_whole(&g->data, transform, "texCoord", place, &found, &set, err));
+    BP_TRY(gltf_numbers(&g->data, transform, "offset", place, map->offset, 2, err));
+    BP_TRY(gltf_numbers(&g->data, transform, "rotation", place, &map->rotation, 1, err));
+    BP_TRY(gltf_numbers(&g->data, transform, "scale", place, map->scale, 2, err));
+    snprintf(map->attribute, sizeof map->attribute, "TEXCOORD_%zu", set < 100 ? set : 100);
+    return BP_OK;
+}
+
 static BpStatus read_material(Gltf *g, size_t number, BpError *err) {
     json_t *element = NULL;
     char place[PLACE_SIZE];
@@ -233,6 +255,7 @@ static BpStatus read_material(Gltf *g, size_t number, BpError *err) {
     BP_TRY(gltf_numbers(&g->data, light, "emissiveStrength", place, &strength, 1, err));
     BP_TRY(gltf_numbers(&g->data, index, "ior", place, &ior, 1, err));
     BP_TRY(gltf_numbers(&g->data, clear, "transmissionFactor", place, &transmission, 1, err));
+    BP_TRY(read_map(g, json_object_get(pbr, "baseColorTexture"), place, &g->maps[number], err));
     BpMeshMaterial *const material = &g->builder->mesh->materials[g->materials[number]];
     const char *const mode = json_string_value(json_object_get(element, "alphaMode"));
     const bool varies = json_object_get(pbr, "metallicRoughnessTexture") != NULL;
@@ -263,7 +286,8 @@ static BpStatus read_materials(Gltf *g, BpError *err) {
     g->material_count = length_of(g, "materials");
     g->materials = calloc(g->material_count + 1, sizeof *g->materials);
     g->base_colors = calloc(g->material_count + 1, sizeof *g->base_colors);
-    if (g->materials == NULL || g->base_colors == NULL) return gltf_fail_memory(err);
+    g->maps = calloc(g->material_count + 1, sizeof *g->maps);
+    if (g->materials == NULL || g->base_colors == NULL || g->maps == NULL) return gltf_fail_memory(err);
     for (size_t m = 0; m < g->material_count; m++) BP_TRY(read_material(g, m, err));
     note_textures(g);
     return BP_OK;
@@ -294,7 +318,8 @@ static BpStatus attributes_of(const Gltf *g, const json_t *primitive, const char
         return gltf_fail(&g->data, place, err, "found material %zu, expected one of %zu", material,
                          g->material_count);
     of->material = found ? (long)material : NO_NUMBER;
-    return BP_OK;
+    return attribute(g, primitive, found ? g->maps[material].attribute : "TEXCOORD_0", place,
+                     &of->coordinates, err);
 }
 
 /* Rows of an accessor that may be left out, one for each of `count` vertices. */
@@ -369,13 +394,14 @@ static BpStatus skinned(const Gltf *g, const Skin *skin, const double *joints, c
 }
 
 typedef struct Rows {
-    GltfRows positions, normals, colors, joints, weights;
+    GltfRows positions, normals, colors, coordinates, joints, weights;
 } Rows;
 
 static void free_rows(Rows *rows) {
     free(rows->positions.values);
     free(rows->normals.values);
     free(rows->colors.values);
+    free(rows->coordinates.values);
     free(rows->joints.values);
     free(rows->weights.values);
 }
@@ -390,6 +416,20 @@ static BpStatus add_color(Gltf *g, const Rows *rows, size_t vertex, long materia
         if (material != NO_NUMBER) color[c] *= g->base_colors[material][c];
     }
     return mesh_color_vertex(g->builder, color, false, err);
+}
+
+/* v of files grows downwards. The turn of KHR_texture_transform is counter-clockwise as files have them, as
+ * the Khronos Group's own viewer does it. */
+static BpStatus add_coordinates(Gltf *g, const Rows *rows, size_t vertex, long material, BpError *err) {
+    if (!g->has_coordinates) return BP_OK;
+    if (rows->coordinates.values == NULL) return mesh_add_coordinates(g->builder, NAN, NAN, false, err);
+    const double from[2] = {rows->coordinates.values[2 * vertex], rows->coordinates.values[2 * vertex + 1]};
+    if (material == NO_NUMBER) return mesh_add_coordinates(g->builder, from[0], 1 - from[1], false, err);
+    const Map *const map = &g->maps[material];
+    const double u = from[0] * map->scale[0], v = from[1] * map->scale[1];
+    const double sine = sin(map->rotation), cosine = cos(map->rotation);
+    return mesh_add_coordinates(g->builder, map->offset[0] + cosine * u + sine * v,
+                                1 - (map->offset[1] + cosine * v - sine * u), false, err);
 }
 
 static BpStatus add_rows(Gltf *g, const Rows *rows, const Attributes *of, const Matrix *global,
@@ -407,6 +447,7 @@ static BpStatus add_rows(Gltf *g, const Rows *rows, const Attributes *of, const 
             if (rows->normals.values != NULL) matrix_normal(&way, &rows->normals.values[3 * v], normal);
             BP_TRY(mesh_add_normal(g->builder, normal, false, err));
         }
+        BP_TRY(add_coordinates(g, rows, v, of->material, err));
         BP_TRY(add_color(g, rows, v, of->material, err));
     }
     return BP_OK;
@@ -420,6 +461,7 @@ static BpStatus add_vertices(Gltf *g, const Attributes *of, const Matrix *global
     const size_t count = rows.positions.count;
     if (status == BP_OK) status = vertex_rows(g, of->normal, 3, 3, count, place, &rows.normals, err);
     if (status == BP_OK) status = vertex_rows(g, of->color, 3, 4, count, place, &rows.colors, err);
+    if (status == BP_OK) status = vertex_rows(g, of->coordinates, 2, 2, count, place, &rows.coordinates, err);
     if (status == BP_OK) status = vertex_rows(g, of->joints, 4, 4, count, place, &rows.joints, err);
     if (status == BP_OK) status = vertex_rows(g, of->weights, 4, 4, count, place, &rows.weights, err);
     g->first_vertex = g->builder->mesh->vertex_count;
@@ -470,6 +512,14 @@ static BpStatus add_triangles(Gltf *g, const GltfRows *indices, size_t count, si
     return BP_OK;
 }
 
+/* Whether the material moves coordinates. */
+static bool is_moved(const Gltf *g, long material) {
+    if (material == NO_NUMBER || !g->has_coordinates) return false;
+    const Map *const map = &g->maps[material];
+    return map->offset[0] != 0 || map->offset[1] != 0 || map->rotation != 0 || map->scale[0] != 1 ||
+           map->scale[1] != 1;
+}
+
 static BpStatus add_primitive(Gltf *g, const json_t *primitive, size_t node, const Skin *skin,
                               const char *place, BpError *err) {
     size_t mode = TRIANGLES, accessor = 0;
@@ -485,9 +535,10 @@ static BpStatus add_primitive(Gltf *g, const json_t *primitive, size_t node, con
     if (extension_of(primitive, "KHR_draco_mesh_compression") != NULL)
         return refuse_extension(g, "KHR_draco_mesh_compression", err);
     BP_TRY(attributes_of(g, primitive, place, &of, err));
-    /* Primitives of one mesh often share their vertices, which a material changes by its colour alone. */
+    /* Primitives of one mesh often share their vertices, which a material changes by its colour, and by what
+     * it does to their coordinates. */
     Attributes vertices = of;
-    if (!g->has_colors) vertices.material = NO_NUMBER;
+    if (!g->has_colors && !is_moved(g, of.material)) vertices.material = NO_NUMBER;
     if (g->last_node != node || memcmp(&vertices, &g->last, sizeof vertices) != 0)
         BP_TRY(add_vertices(g, &of, &g->nodes[node].global, skin, place, err));
     g->last_node = node;
@@ -582,6 +633,7 @@ static BpStatus read_all(Gltf *g, BpError *err) {
     BP_TRY(check_extensions(g, err));
     g->has_normals = has_attribute(g, "NORMAL");
     g->has_colors = has_attribute(g, "COLOR_0");
+    g->has_coordinates = has_attribute(g, "TEXCOORD_0");
     /* Shares of light, and linear, whatever the largest is: section 3.7.2.1. */
     g->builder->vertex_colors.range.largest = 1;
     BP_TRY(read_materials(g, err));
@@ -601,5 +653,6 @@ BpStatus mesh_read_gltf(MeshBuilder *builder, BpError *err) {
     free(g.order);
     free(g.materials);
     free(g.base_colors);
+    free(g.maps);
     return status;
 }

@@ -2,7 +2,7 @@
  *
  * Knows: OBJ.   Does not know: what MTL files say (read_mtl.c), how polygons are cut.
  *
- * Texture coordinates are left out, and so are lines and points. Free-form curves and surfaces
+ * Lines and points are left out. Free-form curves and surfaces
  * are refused, since a mesh without them would lack parts. */
 #include "reader.h"
 
@@ -27,7 +27,7 @@ typedef struct Obj {
     size_t joined_capacity;
     uint32_t material;
     BpNames libraries; /* MTL files that were read */
-    uint64_t textures, lines, points, unknown, unknown_line;
+    uint64_t lines, points, unknown, unknown_line;
     bool has_weights;
 } Obj;
 
@@ -139,35 +139,50 @@ static BpStatus read_normal(Obj *obj, char *at, BpError *err) {
     return mesh_add_normal(obj->builder, normal, true, err);
 }
 
-/* Takes the numbers of a texture coordinate and a normal: "/2", "//3", "/2/3"; *normal stays 0 where there is
- * none. NULL: they are not numbers. */
-static const char *take_others(const char *at, int64_t *normal) {
+/* u, and v, which may be left out and is 0 then; a third is of textures that fill space. */
+static BpStatus read_coordinates(Obj *obj, char *at, BpError *err) {
+    double uv[2] = {NAN, 0};
+    for (int a = 0; a < 2; a++) {
+        double value = 0;
+        at = skip_blanks(at);
+        const char *const end = bp_table_number_parse(at, &value);
+        if (end == NULL) break;
+        uv[a] = value;
+        at += end - at;
+    }
+    return mesh_add_coordinates(obj->builder, uv[0], uv[1], true, err);
+}
+
+/* Takes the numbers of texture coordinates and a normal: "/2", "//3", "/2/3"; what is not there stays 0.
+ * NULL: they are not numbers. */
+static const char *take_others(const char *at, int64_t others[2]) {
     for (int i = 0; i < 2 && *at == '/'; i++) {
-        int64_t number = 0;
-        const char *const end = bp_whole_parse(++at, &number);
+        const char *const end = bp_whole_parse(++at, &others[i]);
         if (end != NULL) at = end;
-        if (end != NULL && i == 1) *normal = number;
     }
     return is_blank(*at) || is_end(*at) ? at : NULL;
 }
 
-/* The normal of the corner that was added last; one that there is not is missing. */
-static BpStatus choose_normal(const Obj *obj, int64_t number, BpError *err) {
-    const int64_t place = number < 0 ? (int64_t)obj->builder->normal_count + number : number - 1;
-    const bool is_possible = place >= 0 && place < (int64_t)BP_MESH_COUNT_MAX;
-    return mesh_choose_normal(obj->builder, is_possible ? (uint32_t)place : MESH_NO_NORMAL, err);
+/* What a number stands for where there are `count` so far; one that there is not is missing. */
+static uint32_t chosen(int64_t number, size_t count) {
+    const int64_t place = number < 0 ? (int64_t)count + number : number - 1;
+    return place >= 0 && place < (int64_t)BP_MESH_COUNT_MAX ? (uint32_t)place : MESH_NO_NUMBER;
 }
 
 static BpStatus read_face(Obj *obj, char *at, BpError *err) {
     for (at = skip_blanks(at); !is_end(*at); at = skip_blanks(at)) {
-        int64_t number = 0, normal = 0;
+        int64_t number = 0, others[2] = {0, 0};
         uint32_t vertex = 0;
         const char *end = bp_whole_parse(at, &number);
-        if (end != NULL) end = take_others(end, &normal);
+        if (end != NULL) end = take_others(end, others);
         if (end == NULL) return fail_corner(obj, at, err);
         BP_TRY(find_vertex(obj, number, &vertex, err));
         BP_TRY(mesh_add_corner(obj->builder, vertex, err));
-        if (normal != 0) BP_TRY(choose_normal(obj, normal, err));
+        if (others[0] != 0)
+            BP_TRY(mesh_choose_coordinates(obj->builder, chosen(others[0], obj->builder->coordinate_count),
+                                           err));
+        if (others[1] != 0)
+            BP_TRY(mesh_choose_normal(obj->builder, chosen(others[1], obj->builder->normal_count), err));
         at += end - at;
     }
     return mesh_end_polygon(obj->builder, obj->material, true, err);
@@ -261,9 +276,8 @@ static BpStatus read_statement(Obj *obj, char *line, BpError *err) {
     if (length == 1 && *word == 'f') return read_face(obj, rest, err);
     if (length == 2 && memcmp(word, "fo", 2) == 0) return read_face(obj, rest, err); /* f, in older files */
     if (length == 2 && memcmp(word, "vn", 2) == 0) return read_normal(obj, rest, err);
-    if (length == 2 && memcmp(word, "vt", 2) == 0)
-        obj->textures++;
-    else if (length == 1 && *word == 'l')
+    if (length == 2 && memcmp(word, "vt", 2) == 0) return read_coordinates(obj, rest, err);
+    if (length == 1 && *word == 'l')
         obj->lines++;
     else if (length == 1 && *word == 'p')
         obj->points++;
@@ -290,10 +304,10 @@ static BpStatus read_all(Obj *obj, BpError *err) {
         if (line == NULL) break;
         BP_TRY(read_statement(obj, line, err));
     }
+    if (obj->builder->coordinate_choices.of_corners == NULL) obj->builder->coordinate_count = 0;
     if (obj->builder->polygon_count == 0)
         return input_fail(obj->input, false, err,
                           "found no faces (lines that begin with f), expected a mesh of polygons");
-    note_count(obj, obj->textures, "texture coordinate");
     note_count(obj, obj->lines, "line");
     note_count(obj, obj->points, "point");
     if (obj->has_weights) mesh_note(obj->builder->mesh, "weights of vertices left out");

@@ -1,7 +1,7 @@
 /* read_ply.c: PLY files with faces; see reader.h.
  *
- * Knows: which properties are corners and colours, strips of triangles.   Does not know: how headers and rows
- * are written (particles/ply_rows.h), how polygons are cut. */
+ * Knows: which properties are corners, colours and texture coordinates, strips of triangles.   Does not know:
+ * how headers and rows are written (particles/ply_rows.h), how polygons are cut. */
 #include "reader.h"
 
 #include "particles/column_names.h"
@@ -19,9 +19,10 @@ typedef struct Ply {
     MeshBuilder *builder;
     Input *input;
     PlyHeader header;
-    size_t face;                  /* the element of the faces */
-    PlyList list;                 /* of their corners */
-    int face_color[3], normal[3]; /* places; the first is -1 where there are none */
+    size_t face;      /* the element of the faces */
+    PlyList list;     /* of their corners */
+    PlyList texcoord; /* of u and v at these, behind the other, if the file has them */
+    int face_color[3], normal[3], coordinates[2]; /* places; the first is -1 where there are none */
     double values[PLY_PROPERTIES_MAX];
     bool with_line;
 } Ply;
@@ -100,6 +101,30 @@ static void find_normals(Ply *ply) {
     if (found != 3) ply->normal[0] = -1;
 }
 
+/* u and v: of vertices, by the names that programs give them, or in a list of faces, a pair for each corner.
+ */
+static void find_coordinates(Ply *ply) {
+    static const char *const names[][2] = {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}};
+    const PlyElement *const vertex = &ply->header.elements[ply->header.vertex];
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+        int places[2] = {-1, -1};
+        for (size_t i = 0; i < vertex->property_count; i++) {
+            const PlyProperty *const property = ply_property(&ply->header, (int)i);
+            for (int a = 0; a < 2 && property->count_type == PLY_NONE; a++)
+                if (strcmp(property->name, names[n][a]) == 0) places[a] = (int)i;
+        }
+        if (places[0] >= 0 && places[1] >= 0 && ply->coordinates[0] < 0)
+            memcpy(ply->coordinates, places, sizeof places);
+    }
+    for (size_t i = 0; i < ply->header.elements[ply->face].property_count; i++) {
+        const PlyProperty *const property = face_property(ply, i);
+        if (property->count_type == PLY_NONE || strcmp(property->name, "texcoord") != 0) continue;
+        ply->texcoord.place = i;
+        ply->list.next = &ply->texcoord;
+        ply->coordinates[0] = -1;
+    }
+}
+
 static BpStatus read_vertices(Ply *ply, BpError *err) {
     const PlyHeader *const header = &ply->header;
     double position[3], color[3];
@@ -111,6 +136,9 @@ static BpStatus read_vertices(Ply *ply, BpError *err) {
             for (int a = 0; a < 3; a++) position[a] = ply->values[ply->normal[a]];
             BP_TRY(mesh_add_normal(ply->builder, position, ply->with_line, err));
         }
+        if (ply->coordinates[0] >= 0)
+            BP_TRY(mesh_add_coordinates(ply->builder, ply->values[ply->coordinates[0]],
+                                        ply->values[ply->coordinates[1]], ply->with_line, err));
         if (header->color[0] < 0) continue;
         for (int c = 0; c < 3; c++) color[c] = ply->values[header->color[c]];
         BP_TRY(mesh_color_vertex(ply->builder, color, ply->with_line, err));
@@ -142,10 +170,16 @@ static BpStatus end_polygon(const Ply *ply, BpError *err) {
 }
 
 static BpStatus add_face(const Ply *ply, uint64_t row, BpError *err) {
+    const bool has_pairs = ply->list.next != NULL && ply->texcoord.count == 2 * ply->list.count;
     for (size_t i = 0; i < ply->list.count; i++) {
         const double vertex = ply->list.items[i];
         if (!is_vertex(ply, vertex)) return fail_corner(ply, row, vertex, err);
         BP_TRY(mesh_add_corner(ply->builder, (uint32_t)vertex, err));
+        if (!has_pairs) continue;
+        const size_t number = ply->builder->coordinate_count;
+        BP_TRY(mesh_add_coordinates(ply->builder, ply->texcoord.items[2 * i], ply->texcoord.items[2 * i + 1],
+                                    ply->with_line, err));
+        BP_TRY(mesh_choose_coordinates(ply->builder, (uint32_t)number, err));
     }
     return end_polygon(ply, err);
 }
@@ -198,15 +232,10 @@ static const char *unread_color(const Ply *ply) {
 /* Notes what belongs to surfaces and is not read. */
 static void note_left_out(const Ply *ply) {
     BpMesh *const mesh = ply->builder->mesh;
-    bool has_texture = false, has_material = false;
+    bool has_material = false;
     for (size_t i = 0; i < ply->header.elements[ply->face].property_count; i++) {
         const char *const name = face_property(ply, i)->name;
-        has_texture |= strcmp(name, "texcoord") == 0;
         has_material |= strcmp(name, "material_index") == 0 || strcmp(name, "material_indices") == 0;
-    }
-    for (size_t i = 0; i < ply->header.elements[ply->header.vertex].property_count; i++) {
-        const char *const name = ply_property(&ply->header, (int)i)->name;
-        has_texture |= strcmp(name, "s") == 0 || strcmp(name, "u") == 0 || strcmp(name, "texture_u") == 0;
     }
     const char *const unread = unread_color(ply);
     if (unread != NULL) {
@@ -214,7 +243,6 @@ static void note_left_out(const Ply *ply) {
         bp_printable(unread, shown, sizeof shown);
         mesh_note(mesh, "no colours from \"%s\", since red, green and blue must be properties", shown);
     }
-    if (has_texture) mesh_note(mesh, "texture coordinates left out");
     if (has_material) mesh_note(mesh, "materials of faces, by their numbers, left out");
 }
 
@@ -227,6 +255,7 @@ static BpStatus read_all(Ply *ply, BpError *err) {
     ply->input->line = line;
     find_face_colors(ply);
     find_normals(ply);
+    find_coordinates(ply);
     if (ply->header.color[0] >= 0) ply->builder->vertex_colors.range = ply_color_range(&ply->header);
     for (size_t i = 0; i < ply->header.element_count; i++) {
         if (i == ply->header.vertex)
@@ -245,8 +274,10 @@ BpStatus mesh_read_ply(MeshBuilder *builder, BpError *err) {
     if (ply == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
     ply->builder = builder;
     ply->input = builder->input;
+    ply->coordinates[0] = -1;
     const BpStatus status = read_all(ply, err);
     free(ply->list.items);
+    free(ply->texcoord.items);
     free(ply);
     return status;
 }

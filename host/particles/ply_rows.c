@@ -58,6 +58,12 @@ static BpStatus take_items(Input *input, PlyType type, bool swap, uint64_t count
     return BP_OK;
 }
 
+/* That of property `place`, or NULL. */
+static PlyList *find_list(PlyList *list, size_t place) {
+    while (list != NULL && list->place != place) list = list->next;
+    return list;
+}
+
 /* One row with lists, property by property. `values`, `list`: Optional. */
 static BpStatus take_row(Input *input, const PlyHeader *header, const PlyElement *element, uint64_t row,
                          double *values, PlyList *list, BpError *err) {
@@ -71,8 +77,9 @@ static BpStatus take_row(Input *input, const PlyHeader *header, const PlyElement
         if (values != NULL) values[i] = number;
         if (p->count_type == PLY_NONE) continue;
         if (number < 0) return fail_length(input, false, row, number, err);
-        if (list != NULL && list->place == i)
-            BP_TRY(take_items(input, p->type, header->swap, (uint64_t)number, row, list, err));
+        PlyList *const wanted = find_list(list, i);
+        if (wanted != NULL)
+            BP_TRY(take_items(input, p->type, header->swap, (uint64_t)number, row, wanted, err));
         else if (!input_skip(input, (uint64_t)number * ply_type_size(p->type)))
             return fail_list(input, row, err);
     }
@@ -169,8 +176,7 @@ static BpStatus take_ascii(Input *input, const PlyHeader *header, const PlyEleme
         bool good = ply_parse_number(&line, &number);
         if (good && p->count_type != PLY_NONE) {
             if (!(number >= 0 && number == floor(number))) return fail_length(input, true, row, number, err);
-            PlyList *const wanted = list != NULL && list->place == i ? list : NULL;
-            BP_TRY(parse_items(&line, number, wanted, &good, err));
+            BP_TRY(parse_items(&line, number, find_list(list, i), &good, err));
         }
         values[i] = number;
         if (good) continue;
@@ -202,7 +208,7 @@ BpStatus ply_begin_points(Input *input, const PlyHeader *header, BpError *err) {
 BpStatus ply_take_row(Input *input, const PlyHeader *header, size_t element, uint64_t row, double *values,
                       PlyList *list, BpError *err) {
     const PlyElement *const taken = &header->elements[element];
-    if (list != NULL) list->count = 0;
+    for (PlyList *one = list; one != NULL; one = one->next) one->count = 0;
     return header->form == PLY_ASCII ? take_ascii(input, header, taken, row, values, list, err)
            : taken->has_list         ? take_row(input, header, taken, row, values, list, err)
                                      : take_plain_row(input, header, taken, row, values, err);

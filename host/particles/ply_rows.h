@@ -16,11 +16,12 @@
 typedef struct PlyList {
     size_t place, count, capacity;
     double *items;
+    struct PlyList *next; /* Optional: another list of the row */
 } PlyList;
 
 /* Reads the next row of an element: values[i] gets its property i, or of a list the length. `row`: its
- * number, from 0. `list`: Optional; gets the items of that list. Numbers may be infinite, or NaN where the
- * file has none. */
+ * number, from 0. `list`: Optional; it and those behind it get the items of their lists. Numbers may be
+ * infinite, or NaN where the file has none. */
 BpStatus ply_take_row(Input *input, const PlyHeader *header, size_t element, uint64_t row, double *values,
                       PlyList *list, BpError *err);
 /* Passes over an element. */

@@ -57,7 +57,8 @@ class BpSphereSet(c.Structure):
 
 class BpMeshSet(c.Structure):
     _fields_ = [("vertex_count", c.c_size_t), ("triangle_count", c.c_size_t), ("vertex", BpRows), ("triangle", c.c_void_p),
-                ("color", BpRows), ("material", c.c_char_p), ("name", c.c_char_p), ("normal", BpRows), ("smooth", c.c_uint32)]
+                ("color", BpRows), ("material", c.c_char_p), ("name", c.c_char_p), ("normal", BpRows), ("smooth", c.c_uint32),
+                ("uv_of_corners", c.c_uint32), ("uv", BpRows)]
 
 
 class BpLineSet(c.Structure):

@@ -60,6 +60,8 @@ class Mesh:
         are those of faces. None: the material's own.
     normals: (N, 3), a direction for each vertex, of any length, zeros where one is missing: the mesh looks curved. smooth: it does so
         without them, too, by those of its faces.
+    uvs: texture coordinates, by which images and checkers lie on the mesh: (N, 2), u and v of each vertex, or (F, 3, 2), for quads
+        (F, 4, 2), of each corner of the faces, so that a vertex on a seam may have several; v grows upwards.
     material: a name from the scene's "materials", or a material itself. Those that let light in ask for faces that are closed.
         None: matte.
     up, view, name: as in Spheres.
@@ -76,6 +78,7 @@ class Mesh:
     name: str = "mesh"
     normals: typing.Optional[npt.ArrayLike] = None
     smooth: bool = False
+    uvs: typing.Optional[npt.ArrayLike] = None
 
     def _normals(self, count: int) -> typing.Optional[Array]:
         if self.normals is None:
@@ -87,6 +90,21 @@ class Mesh:
         if len(bad) > 0:
             raise lib.SceneError(f"normals: found no finite number for vertex {bad[0]} (from 0), expected three")
         return normals
+
+    def _uvs(self, corners: Array, count: int) -> typing.Optional[Array]:
+        """(N, 2) of vertices, or (F, 3, 2) or (F, 4, 2) of corners."""
+        if self.uvs is None:
+            return None
+        uvs = floats(self.uvs, "uvs")
+        of_corners = corners.shape + (2,)
+        if uvs.shape not in ((count, 2), of_corners):
+            raise lib.SceneError(f"uvs: found an array of shape {uvs.shape}, expected ({count}, 2), a pair for each vertex, or {of_corners}, one for "
+                                 "each corner of the faces")
+        bad = np.argwhere(~np.isfinite(uvs))
+        if len(bad) > 0:
+            noun = "vertex" if uvs.ndim == 2 else "face"
+            raise lib.SceneError(f"uvs: found no finite number for {noun} {bad[0][0]} (from 0), expected two for each {noun if uvs.ndim == 2 else 'corner'}")
+        return uvs
 
     def _places(self) -> Array:
         places = vertex_places(self.vertices, "N")
@@ -127,12 +145,16 @@ class Mesh:
         places = self._places()
         corners = self._corners(len(places))
         colors, normals = self._colors(corners, len(places)), self._normals(len(places))
+        uvs = self._uvs(corners, len(places))
         if corners.shape[1] == 4:
             colors = np.repeat(colors, 2, axis=0) if colors is not None and colors.ndim == 2 else colors
             corners = corners[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+            uvs = uvs[:, [0, 1, 2, 0, 2, 3]] if uvs is not None and uvs.ndim == 3 else uvs
         triangles = np.ascontiguousarray(corners, np.uint32)
-        keep += [places, triangles, colors, normals]
+        of_corners = uvs is not None and uvs.ndim == 3
+        uvs = np.ascontiguousarray(uvs).reshape(-1, 2) if of_corners else uvs
+        keep += [places, triangles, colors, normals, uvs]
         return lib.BpMeshSet(len(places), len(triangles), rows(places, True), c.c_void_p(triangles.ctypes.data),
                              rows(colors, colors is not None and colors.ndim == 2),
                              None if material is None else c_text("material", material), c_text("name", self.name),
-                             rows(normals, True), int(self.smooth))
+                             rows(normals, True), int(self.smooth), int(of_corners), rows(uvs, True))

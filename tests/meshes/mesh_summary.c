@@ -73,6 +73,12 @@ static void print_whole(const BpMesh *mesh) {
         print_colors("face_colors", (const float(*)[3])mesh->face_colors, mesh->face_count);
     if (mesh->face_normals != NULL)
         print_colors("corner_normals", (const float(*)[3])mesh->face_normals, 3 * mesh->face_count);
+    if (mesh->face_coordinates != NULL) printf(", \"uvs\": [");
+    for (size_t i = 0; i < 3 * mesh->face_count && mesh->face_coordinates != NULL; i++) {
+        const float *const uv = &mesh->face_coordinates[i / 3][2 * (i % 3)];
+        printf(isnan(uv[0]) ? "%snull" : "%s[%.9g, %.9g]", i > 0 ? ", " : "", (double)uv[0], (double)uv[1]);
+    }
+    if (mesh->face_coordinates != NULL) printf("]");
 }
 
 static void print_materials(const BpMesh *mesh) {

@@ -173,9 +173,13 @@ def seeds():
                        "faces-first": ply("little", face_first=True, count="int"), "cut": ply("little")[:-5],
                        "huge": text.replace(b"face 6", b"face 1000000000"), "l": ply("ascii", L_SHAPE, [range(6)]),
                        "strips": ply("little", faces=STRIPS, element="tristrips"), "strip": ply("ascii", faces=STRIPS, element="tristrips"),
+                       "coordinates": b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\n"
+                                      b"element face 2\nproperty list uchar float texcoord\nproperty list uchar int vertex_indices\nend_header\n"
+                                      b"0 0 0 0.5 nan\n1 0 0 1 0\n0 1 0 0 1\n6 0 0 1 0 0.5 1e9 3 0 1 2\n2 1 1 3 2 1 0\n",
                        "gz": gzip_of(text)},
         "meshes_obj": {"plain": cube.encode(), "mtl": OBJ_WITH_MTL.encode() + b"\0" + MTL.encode(), "l": obj(L_SHAPE, [range(6)]).encode(),
                        "colours": b"v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n", "no-corners": b"v 0 0 0\nf\n", "curve": b"v 0 0 0\ncstype bezier\n",
+                       "coordinates": b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.5 0.25\nvt 2 -1 7\nvt x\nf 1/1 2/2/1 3/-1 4/9\nf 1 2/2 3/3\nvt 0.125\n",
                        "bow": b"v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n",
                        "holed": b"v 0 0 0\nv 8 0 0\nv 8 8 0\nv 0 8 0\nv 2 2 0\nv 2 6 0\nv 6 6 0\nv 6 2 0\nf 1 2 3 4 1 5 6 7 8 5\n"},
         "meshes_stl": {"text": stl_text(triangles=TRIANGLES[:3]).encode(), "binary": stl_binary(triangles=TRIANGLES[:4], attribute=3),
@@ -189,6 +193,9 @@ def seeds():
                                                  ("WEIGHTS_0", [(0.5, 0.5, 0, 0)] * 8, {"form": "VEC4"})],
                                      nodes=[{"mesh": 0, "skin": 0, "children": [1, 2]}, {"translation": [1, 0, 0]}, {"scale": [2, 2, 2]}],
                                      skins=[{"joints": [1, 2]}]).binary(),
+                        "coordinates": gltf(attributes=[("TEXCOORD_0", [(i, 0.25 * i) for i in range(8)], {"form": "VEC2"})], primitive={"material": 0},
+                                            materials=[{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions": {
+                                                "KHR_texture_transform": {"offset": [0.5, 1], "rotation": 0.3, "scale": [2, -1]}}}}}]).binary(),
                         "strip": gltf(triangles=[(0, 1, 2, 3)], mode=5, index="B").text(), "fan": gltf(index=None, mode=6).binary()},
         "meshes_off": {"plain": off().encode(), "colours": off(keyword="COFF", behind_vertex=" 255 0 9 255").encode(),
                        "faces": off(behind_face=" 0.5 0.25 1").encode(), "all": off(keyword="STCNOFF", behind_vertex=" 0 0 1 1 0 0 1 0.5 0.5").encode(),

@@ -140,16 +140,44 @@ class Ply(MeshTest):
     def test_left_out(self):
         """What belongs to surfaces and is not read has a note."""
         text = ply("ascii", CORNERS[:3], [(0, 1, 2)], extra=True)
-        self.assertEqual(self.of("a.ply", text)["notes"], "texture coordinates left out")
+        self.assertEqual(self.of("a.ply", text)["notes"], "")
         for name in ("material_index", "material_indices"):
             self.assertIn("materials of faces, by their numbers, left out", self.of("a.ply", text.replace(b"flags", name.encode()))["notes"])
         for name in ("rgb", "rgba"):
             self.assertIn(f'no colours from "{name}", since red, green and blue must be properties', self.of("a.ply", text.replace(b"quality", name.encode()))["notes"])
             self.assertIn(f'no colours from "{name}", since', self.of("a.ply", text.replace(b"flags", name.encode()))["notes"])
         self.assertEqual(self.of("a.ply", ply("ascii"))["notes"], "")
-        for name in ("s", "u", "texture_u"):
-            found = self.of("a.ply", text.replace(b"texcoord", b"other").replace(b"quality", name.encode()))
-            self.assertEqual(found["notes"], "texture coordinates left out")
+
+    def test_coordinates(self):
+        """Of vertices, by the names of several programs, or of corners in a list; both are read in any order and form."""
+        def text(names, rows, faces, header=""):
+            return ("ply\nformat ascii 1.0\nelement vertex 4\n" + "".join(f"property float {name}\n" for name in names) +
+                    f"element face {len(faces)}\n{header}property list uchar int vertex_indices\n" + ("" if header else "property list uchar float texcoord\n") * (len(faces[0].split()) > 5) +
+                    "end_header\n" + "\n".join(rows + faces) + "\n")
+        places = ["0 0 0", "1 0 0", "1 1 0", "0 1 0"]
+        uvs = [[0.25, 0.5], [1.5, -2], [0.75, 1], [0, 3]]
+        for u, v in (("s", "t"), ("u", "v"), ("texture_u", "texture_v")):
+            for names, row in ((["x", "y", "z", u, v], "{p} {u} {v}"), ([v, "x", "y", "z", u], "{v} {p} {u}")):
+                rows = [row.format(p=p, u=a, v=b) for p, (a, b) in zip(places, uvs)]
+                found = self.of("a.ply", text(names, rows, ["4 0 1 2 3"]))
+                self.near(found["uvs"], [uvs[vertex] for face in found["faces"] for vertex in face])
+        rows = [f"{p} {u} {v}" for p, (u, v) in zip(places, uvs)]
+        found = self.of("a.ply", text(["x", "y", "z", "s", "v"], rows, ["3 0 1 2"]))
+        self.assertNotIn("uvs", found)
+        # Of corners: they count, where vertices have some, too; a list of another length has none.
+        corners = "4 0 1 2 3 8 " + " ".join(f"{u + 1} {v + 1}" for u, v in uvs)
+        found = self.of("a.ply", text(["x", "y", "z", "s", "t"], rows, [corners, "3 0 1 2 4 1 2 3 4"]))
+        expected = [[u + 1, v + 1] for u, v in uvs]
+        self.near(found["uvs"][:6], [expected[vertex] for face in found["faces"][:2] for vertex in face])
+        self.assertEqual(found["uvs"][6:], [None] * 3)
+        found = self.of("a.ply", text(["x", "y", "z", "s", "t"], [rows[0], rows[1].replace("1.5", "nan"), rows[2], rows[3].replace("3", "2e6")], ["3 0 2 1", "3 0 2 3"]))
+        self.assertEqual(found["uvs"], [None] * 6)
+        # The same in binary, with the lists in the other order.
+        head = ("ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                "property list uchar float texcoord\nproperty list uchar int vertex_indices\nend_header\n").encode()
+        body = b"".join(struct.pack("<3f", *map(float, p.split())) for p in places) + struct.pack("<B8f", 8, *sum(uvs, [])) + struct.pack("<B4i", 4, 0, 1, 2, 3)
+        found = self.of("a.ply", head + body)
+        self.near(found["uvs"], [uvs[vertex] for face in found["faces"] for vertex in face])
 
     def test_colors(self):
         colors = [(255, 0, 0), (0, 128, 255), (1, 2, 3)]
@@ -245,11 +273,27 @@ class Obj(MeshTest):
             {"name": "lamp light", "faces": 2, "kd": [0, 0, 0], "ke": [4, 4, 3], "d": 0.75}])
         self.assertEqual(found["face_material"], [0, 0, 0, 0, 1, 1])
         self.assertEqual([tuple(f) for f in found["faces"]], TRIANGLES[:4] + [(0, 4, 5), (0, 5, 1)])
-        for note in ("textures left out", "1 texture coordinate left out", "1 line left out", "1 point left out"):
+        for note in ("textures left out", "1 line left out", "1 point left out"):
             self.assertIn(note, found["notes"])
         found = self.of("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl a\nf 1 2 3\nusemtl b\nusemtl\nf 1 2 3\n")
         self.assertEqual(found["face_material"], [-1, 0, -1])
         self.assertEqual(found["materials"], [{"name": "a", "faces": 1}, {"name": "b", "faces": 0}])
+
+    def test_obj_coordinates(self):
+        """Of corners, by numbers of their own, from the end, defined later, of polygons; without v it is 0; missing ones make a triangle have none."""
+        square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+        listed = "vt 0.5 0.25\nvt 2 -1 7\nvt 0.125\n"
+        a, b, c = [0.5, 0.25], [2, -1], [0.125, 0]
+        for corners, expected in (("1/1 2/2 3/3", [a, b, c]), ("1/3/1 2/1/1 3/2/1", [c, a, b]), ("1/-1 2/-2 3/-3", [c, b, a])):
+            self.near(self.of("a.obj", f"{square}vn 0 0 1\n{listed}f {corners}\n")["uvs"], expected)
+        found = self.of("a.obj", square + "f 1/1 2/2 3/3 4/1\n" + listed)
+        by_vertex = {0: a, 1: b, 2: c, 3: a}
+        self.near(found["uvs"], [by_vertex[vertex] for face in found["faces"] for vertex in face])
+        for corners in ("1 2/2 3/3", "1/1 2//1 3/3", "1/1 2/2 3/9", "1/1 2/2 3/-6", "1/4 2/2 3/3", "1/5 2/2 3/3"):
+            found = self.of("a.obj", f"{square}vn 0 0 1\n{listed}vt x\nvt 0 1e7\nf {corners}\n")
+            self.assertEqual(found["uvs"], [None] * 3, corners)
+        for corners in ("1 2 3", "1//1 2//1 3//1"):
+            self.assertNotIn("uvs", self.of("a.obj", f"{square}vn 0 0 1\n{listed}f {corners}\n"))
 
     def test_obj_normals(self):
         """Of corners: with and without texture coordinates, from the end, defined later, of polygons; 0 where one is missing or has no direction."""
@@ -683,6 +727,31 @@ class GltfFiles(MeshTest):
         self.assertNotIn("kd", of({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}})["materials"][0])
         self.assertNotIn("d", of({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.25]}})["materials"][0])
         self.assertNotIn("metallic", of({"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}})["materials"][0])
+
+    def test_coordinates(self):
+        """TEXCOORD_0, or the set that the material names, with v downwards; moved, turned and scaled as the extension says."""
+        uvs = [(0.25 * i, 0.125 * i * i) for i in range(8)]
+        others = [(1 - u, v / 2) for u, v in uvs]
+
+        def of(attributes, **texture):
+            made = gltf(attributes=attributes, materials=[{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, **texture}}}], primitive={"material": 0})
+            found = self.of("a.glb", made.binary())
+            return found["faces"], found["uvs"]
+        sets = [("TEXCOORD_0", uvs, {"form": "VEC2"}), ("TEXCOORD_1", others, {"form": "VEC2"})]
+        for texture, wanted in (({}, uvs), ({"texCoord": 1}, others), ({"extensions": {"KHR_texture_transform": {"texCoord": 1}}}, others)):
+            faces, found = of(sets, **texture)
+            self.near(found, [[wanted[vertex][0], 1 - wanted[vertex][1]] for face in faces for vertex in face])
+        turn = {"offset": [0.5, -0.25], "rotation": 0.3, "scale": [2, 3]}
+        faces, found = of(sets, extensions={"KHR_texture_transform": turn})
+        for vertex, uv in zip((vertex for face in faces for vertex in face), found):
+            u, v = 2 * uvs[vertex][0], 3 * uvs[vertex][1]
+            self.near([uv], [[0.5 + math.cos(0.3) * u + math.sin(0.3) * v, 1 - (-0.25 - math.sin(0.3) * u + math.cos(0.3) * v)]])
+        for kind, most in (("B", 255), ("H", 65535)):
+            whole = [(0, most), (most, 0), (51, 0)] + [(0, 0)] * 5
+            faces, found = of([("TEXCOORD_0", whole, {"form": "VEC2", "kind": kind, "normalized": True})])
+            self.near(found, [[whole[vertex][0] / most, 1 - whole[vertex][1] / most] for face in faces for vertex in face])
+        self.refuse("a.glb", gltf(attributes=[("TEXCOORD_0", uvs[:7], {"form": "VEC2"})]).binary(), "found 7 rows of an attribute")
+        self.assertNotIn("uvs", self.of("a.glb", gltf().binary()))
 
     def test_left_out(self):
         more = gltf(textures=[{}], animations=[{}, {}], cameras=[{}], extensions={"KHR_lights_punctual": {"lights": [{}, {}, {}]}})

@@ -223,6 +223,29 @@ class Meshes(ProgramTest):
         self.scene("s.json", {"file": "cube.off", "material": "clay"}, spheres=[GROUND])
         self.succeed("check", "s.json", "--width", 24, "--spp", 256)
 
+    # ---- texture coordinates ----
+
+    def test_coordinates(self):
+        """A file's are those of inline triangles, to the bit, also mirrored; nothing is kept of a mesh on which no texture lies."""
+        uvs = [[0.3 * x + y, 0.2 * z - 0.7 * y] for x, y, z in CORNERS]
+        self.write("cube.obj", "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "".join(f"vt {u} {v}\n" for u, v in uvs) +
+                   "".join("f " + " ".join(f"{k + 1}/{k + 1}" for k in face) + "\n" for face in CUBE))
+        for scale in ([1, 1, 1], [-1, 1, 1]):
+            mesh = self.scene("m.json", {"file": "cube.obj", "material": "mapped", "scale": scale}, spheres=[GROUND])
+            flip = [0, 2, 1] if scale[0] < 0 else [0, 1, 2]
+            listed = [{"vertices": [[scale[0] * CORNERS[face[k]][0], *CORNERS[face[k]][1:]] for k in flip], "uvs": [uvs[face[k]] for k in flip], "material": "mapped"}
+                      for face in CUBE]
+            picture = self.picture(mesh)
+            self.assert_same(picture, self.picture(self.scene("t.json", spheres=[GROUND], triangles=listed)))
+            self.assert_different(picture, self.picture(self.scene("c.json", {"file": "cube.obj", "material": "clay", "scale": scale}, spheres=[GROUND])))
+        self.assertIn("its texture coordinates are not used, since no texture lies on it", self.succeed("scene", "c.json").errors)
+        self.assertNotIn("texture coordinates", self.succeed("scene", "m.json").errors)
+
+    def test_check_coordinates(self):
+        """The reference lays the texture on the same places."""
+        self.write("roof.obj", "v 0 0 0\nv 2 0 0\nv 1 1.5 0.5\nv 1 1 -1\nvt 0 0\nvt 3 0.5\nvt 1.5 2\nvt -1 1\nf 1/1 2/2 3/3\nf 2/2 4/4 3/3\n")
+        self.succeed("check", self.scene("s.json", {"file": "roof.obj", "material": "mapped"}, spheres=[GROUND]), "--width", 24, "--spp", 256)
+
     # ---- what is refused ----
 
     def test_refused(self):

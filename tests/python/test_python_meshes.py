@@ -76,6 +76,36 @@ refused(ballpark.SceneError, "normals: found no finite number for vertex 1", wit
 framed = ballpark.render(vertices=CORNERS, faces=FACES, normals=normals, width=24, spp=4)
 assert np.array_equal(np.array(framed.radiance), np.array(ballpark.render(ballpark.Mesh(CORNERS, FACES, normals=normals), width=24, spp=4).radiance))
 
+# Texture coordinates of vertices, and of corners, are those of a document's triangles.
+TEXTURES = {"map": {"type": "checker", "mapping": "surface", "colors": [0.1, [0.9, 0.5, 0.2]], "repeat": [3, 2]}}
+PAINTED = {"painted": {"type": "lambertian", "albedo": {"texture": "map"}}}
+uvs = CORNERS[:, :2] * 0.75 + CORNERS[:, 2:] * 0.125
+of_corners = np.random.default_rng(5).uniform(-2, 3, (12, 3, 2)).astype(np.float32)
+
+
+def with_uvs(faces, given, **more):
+    document = {**DOCUMENT, "materials": {**DOCUMENT["materials"], **PAINTED}, "textures": TEXTURES}
+    return rgb(ballpark.Scene(document, ballpark.Mesh(CORNERS, faces, uvs=given, material="painted", **more)))
+
+
+def painted(pairs):
+    listed_ = [{"vertices": CORNERS[face].tolist(), "uvs": np.asarray(pair, float).tolist(), "material": "painted"} for face, pair in zip(FACES, pairs)]
+    return rgb(ballpark.Scene({**DOCUMENT, "materials": {**DOCUMENT["materials"], **PAINTED}, "textures": TEXTURES, "triangles": listed_}))
+
+
+for given in (uvs, uvs.astype(np.float32), uvs.tolist(), np.asfortranarray(uvs), uvs[FACES]):
+    assert np.array_equal(with_uvs(FACES, given), painted(uvs[FACES]))
+assert np.array_equal(with_uvs(FACES, of_corners), painted(of_corners))
+quads = np.random.default_rng(6).uniform(-2, 3, (6, 4, 2)).astype(np.float32)
+assert np.array_equal(with_uvs(QUADS, quads), painted(quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3, 2)))
+assert np.array_equal(with_uvs(QUADS, uvs), painted(uvs[FACES]))
+refused(ballpark.SceneError, "uvs: found an array of shape (8, 3), expected (8, 2), a pair for each vertex, or (12, 3, 2)", with_uvs, FACES, CORNERS)
+refused(ballpark.SceneError, "uvs: found no finite number for face 2", with_uvs, FACES, np.where(np.arange(72).reshape(12, 3, 2) == 13, np.nan, of_corners))
+refused(ballpark.SceneError, "vertex 3 (from 0) of mesh: texture coordinates: found 2e+06", with_uvs, FACES, np.where(np.arange(16).reshape(8, 2) == 7, 2e6, uvs))
+refused(ballpark.SceneError, "no texture coordinates", with_uvs, FACES, None)
+one = ballpark.render(vertices=CORNERS, faces=FACES, uvs=uvs, material="painted", materials=PAINTED, textures=TEXTURES, width=24, spp=4)
+assert np.array_equal(np.array(one.radiance), np.array(ballpark.render(ballpark.Mesh(CORNERS, FACES, uvs=uvs, material="painted"), materials=PAINTED, textures=TEXTURES, width=24, spp=4).radiance))
+
 # Numbers go through a map.
 mapped = rgb(with_mesh(CORNERS, FACES, np.arange(12.0), material="clay", cmap="viridis"))
 assert len(np.unique(mapped.round(3), axis=0)) > 3
