@@ -54,6 +54,65 @@ BpStatus bp_particle_document(const char *path, char **text, BpError *err) {
 
 /* ---- meshes ---- */
 
+/* ---- images of materials ---- */
+
+/* Whether a file beside the mesh is an image that is read, by its first bytes. */
+static bool is_image(const char *mesh_path, const char *name) {
+    static const char *const marks[] = {"\x89PNG", "v/1\x01", "PF", "Pf", "#?"};
+    char begin[4] = "", *const path = bp_path_beside(mesh_path, name);
+    FILE *stream = NULL;
+    uint64_t size = 0;
+    bool found = false;
+    if (path != NULL && bp_file_open(path, false, "an image", &stream, &size, NULL) == BP_OK) {
+        const size_t length = fread(begin, 1, sizeof begin, stream);
+        for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
+            found |= length == sizeof begin && memcmp(begin, marks[i], strlen(marks[i])) == 0;
+        fclose(stream);
+    }
+    free(path);
+    return found;
+}
+
+/* Whether all faces of a material have texture coordinates. */
+static bool has_coordinates(const BpMesh *mesh, uint32_t material) {
+    for (size_t f = 0; f < mesh->face_count; f++)
+        if (mesh->face_material[f] == material &&
+            (mesh->face_coordinates == NULL || isnan(mesh->face_coordinates[f][0])))
+            return false;
+    return true;
+}
+
+/* Puts the material's image in place of its albedo, and into `textures`. What both multiply each other by is
+ * kept if it is a number. */
+static void offer_image(const BpMesh *mesh, uint32_t number, const char *path, json_t *material,
+                        json_t *textures, char *note) {
+    const BpMeshMaterial *const offer = &mesh->materials[number];
+    const bool inside = offer->image_inside > 0;
+    if ((offer->image_file == NULL && !inside) || json_object_get(material, "albedo") == NULL) return;
+    const char *const why = !has_coordinates(mesh, number) ? "not all of its faces have texture coordinates"
+                            : !inside && !is_image(path, offer->image_file)
+                                ? "there is no such file that is a PNG, OpenEXR, PFM or Radiance picture"
+                                : NULL;
+    if (why != NULL) {
+        snprintf(note, BP_DOCUMENT_NOTE_SIZE, "the image %.60s of the material \"%.60s\" is left out: %s",
+                 inside ? "inside" : offer->image_file, offer->name, why);
+        return;
+    }
+    const double *const kd = offer->kd;
+    json_t *const texture =
+        json_pack("{ss, ss}", "type", "image", "file", inside ? base_name(path) : offer->image_file);
+    if (texture == NULL) return; /* said by finish() */
+    if (inside) json_object_set_new(texture, "image", json_integer((json_int_t)offer->image_inside - 1));
+    if (offer->image_clamped) json_object_set_new(texture, "wrap", json_string("clamp"));
+    if (inside || !bp_path_has_ending(path, ".obj"))
+        if (kd[0] > 0 && kd[0] < 1 && !(kd[1] < kd[0] || kd[1] > kd[0] || kd[2] < kd[0] || kd[2] > kd[0]))
+            json_object_set_new(texture, "scale", json_real(kd[0]));
+    json_object_set_new(textures, offer->name, texture);
+    json_object_set_new(material, "albedo", json_pack("{ss}", "texture", offer->name));
+}
+
+/* ---- materials ---- */
+
 static const double clay[3] = {0.6, 0.58, 0.55};
 
 static json_t *matte(const double kd[3], const double ke[3]) {
@@ -104,9 +163,10 @@ static BpStatus offered(const BpMesh *mesh, uint32_t number, const BpMeshUse *ow
     return BP_OK;
 }
 
-/* The materials that the faces of an OBJ or glTF file use, into `materials` and `mesh`, two objects. */
-static BpStatus add_offers(const char *path, json_t *materials, json_t *entry, bool *all_have_one, char *note,
-                           BpError *err) {
+/* The materials that the faces of an OBJ or glTF file use, into `materials` and `mesh`, and their images into
+ * `textures`, three objects. */
+static BpStatus add_offers(const char *path, json_t *materials, json_t *textures, json_t *entry,
+                           bool *all_have_one, char *note, BpError *err) {
     BpMesh mesh;
     BP_TRY(bp_mesh_read(path, &mesh, err));
     BpMeshUse own = {.name = path, .material = UINT32_MAX};
@@ -121,6 +181,7 @@ static BpStatus add_offers(const char *path, json_t *materials, json_t *entry, b
         if (mesh.materials[m].face_count == 0) continue;
         with_one += mesh.materials[m].face_count;
         status = offered(&mesh, m, &own, &material, note, err);
+        if (status == BP_OK) offer_image(&mesh, m, path, material, textures, note);
         if (status == BP_OK &&
             (json_object_set_new(materials, mesh.materials[m].name, material) != 0 ||
              json_object_set_new(names, mesh.materials[m].name, json_string(mesh.materials[m].name)) != 0))
@@ -150,20 +211,23 @@ static void add_clay(json_t *materials, json_t *entry) {
 
 BpStatus bp_mesh_document(const char *path, char **text, char note[BP_DOCUMENT_NOTE_SIZE], BpError *err) {
     json_t *document = begin(base_name(path), "scene", "studio");
-    json_t *const entry = json_pack("{ss}", "file", base_name(path)), *const materials = json_object();
-    bool all_have_one = false, whole = document != NULL && entry != NULL && materials != NULL;
+    json_t *const entry = json_pack("{ss}", "file", base_name(path)), *const materials = json_object(),
+                  *const textures = json_object();
+    bool all_have_one = false,
+         whole = document != NULL && entry != NULL && materials != NULL && textures != NULL;
     BpStatus status = BP_OK;
     note[0] = '\0';
     *text = NULL;
     if (whole && (bp_path_has_ending(path, ".obj") || bp_path_has_ending(path, ".gltf") ||
                   bp_path_has_ending(path, ".glb"))) {
-        status = add_offers(path, materials, entry, &all_have_one, note, err);
+        status = add_offers(path, materials, textures, entry, &all_have_one, note, err);
         whole = status == BP_OK;
         if (status != BP_OK && err != NULL && err->message[0] != '\0') goto done;
     }
     if (whole && !all_have_one) add_clay(materials, entry);
     if (whole && bp_path_has_ending(path, ".stl"))
         json_object_set_new(entry, "rotate", json_pack("[iii]", -90, 0, 0));
+    if (whole && json_object_size(textures) > 0) whole = json_object_set(document, "textures", textures) == 0;
     whole = whole && json_object_set(document, "materials", materials) == 0 &&
             json_object_set_new(document, "meshes", json_pack("[O]", entry)) == 0 &&
             json_object_set_new(document, "shadow_catcher", json_true()) == 0;
@@ -177,5 +241,6 @@ done:
     json_decref(document);
     json_decref(entry);
     json_decref(materials);
+    json_decref(textures);
     return status;
 }

@@ -68,7 +68,7 @@ static BpStatus parse_environment(const BpNode *node, unsigned flags, BpScene *s
     const BpNode scale = bp_node_member(node, "scale");
     for (int c = 0; c < 3; c++) scene->background_bottom[c] = scene->background_top[c] = 0;
     BP_TRY(bp_node_number(&turn, &scene->environment_turn, err));
-    return bp_parse_image(&image, &encoding, &scale, flags, scene, &scene->environment, err);
+    return bp_parse_image(&image, &encoding, &scale, 0, flags, scene, &scene->environment, err);
 }
 
 BpStatus bp_parse_background(const BpNode *node, unsigned flags, BpScene *scene, BpError *err) {

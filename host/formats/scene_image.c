@@ -5,6 +5,7 @@
 
 #include "base/input_file.h"
 #include "base/words.h"
+#include "meshes/mesh.h"
 #include "named_file.h"
 #include "scene_changes.h"
 
@@ -16,8 +17,23 @@
     X(BP_ENCODING_OF_FORMAT, NULL) X(BP_ENCODING_SRGB, "srgb") X(BP_ENCODING_LINEAR, "linear")
 BP_WORDS(BpEncoding, static const char *const encoding_names, ENCODING_WORDS);
 
-static BpStatus read_file(const BpNode *node, const char *file, BpEncoding encoding, double scale,
-                          const BpScene *scene, BpImage **image, BpError *err) {
+/* An image inside of a glTF file. */
+static BpStatus read_inside(FILE *gltf, const char *path, uint32_t inside, BpEncoding encoding, double scale,
+                            uint64_t left, BpImage **image, BpError *err) {
+    unsigned char *bytes = NULL;
+    size_t length = 0;
+    BP_TRY(bp_mesh_read_image(gltf, path, inside - 1, &bytes, &length, err));
+    FILE *const stream = fmemopen(bytes, length > 0 ? length : 1, "rb");
+    const BpStatus status = stream != NULL
+                                ? bp_image_read(stream, length, path, encoding, scale, left, image, err)
+                                : bp_fail(err, BP_ERR_MEMORY, "out of memory for an image");
+    if (stream != NULL) fclose(stream);
+    free(bytes);
+    return status;
+}
+
+static BpStatus read_file(const BpNode *node, const char *file, uint32_t inside, BpEncoding encoding,
+                          double scale, const BpScene *scene, BpImage **image, BpError *err) {
     FILE *stream = NULL;
     uint64_t size = 0, left = BP_IMAGE_TEXELS_MAX;
     for (size_t i = 0; i < scene->image_count; i++)
@@ -27,7 +43,8 @@ static BpStatus read_file(const BpNode *node, const char *file, BpEncoding encod
     BpStatus status =
         bp_node_open_file(node, path, "an image: PNG, OpenEXR, PFM or Radiance (.hdr)", &stream, &size, err);
     if (status == BP_OK) {
-        status = bp_image_read(stream, size, path, encoding, scale, left, image, err);
+        status = inside > 0 ? read_inside(stream, path, inside, encoding, scale, left, image, err)
+                            : bp_image_read(stream, size, path, encoding, scale, left, image, err);
         fclose(stream);
         if (status == BP_ERR_SCENE && err != NULL) bp_name_document(node, "an image", err);
     }
@@ -43,9 +60,10 @@ static BpStatus stand_in(BpEncoding encoding, double scale, BpImage **image, BpE
     return bp_texels_finish(*image, scale, "", err);
 }
 
-static BpStatus keep_image(const char *file, BpImage *image, BpScene *scene, BpError *err) {
+static BpStatus keep_image(const char *file, uint32_t inside, BpImage *image, BpScene *scene, BpError *err) {
     BpImage **images = realloc(scene->images, (scene->image_count + 1) * sizeof *images);
     if (images != NULL) scene->images = images;
+    image->inside = inside;
     BpStatus status = images != NULL ? bp_copy_text(file, &image->file, err)
                                      : bp_fail(err, BP_ERR_MEMORY, "out of memory for an image");
     if (status == BP_OK)
@@ -56,7 +74,7 @@ static BpStatus keep_image(const char *file, BpImage *image, BpScene *scene, BpE
 }
 
 BpStatus bp_parse_image(const BpNode *file_node, const BpNode *encoding_node, const BpNode *scale_node,
-                        unsigned flags, BpScene *scene, BpImage **image, BpError *err) {
+                        uint32_t inside, unsigned flags, BpScene *scene, BpImage **image, BpError *err) {
     const char *file = NULL;
     int choice = -1;
     double scale = 1;
@@ -68,8 +86,8 @@ BpStatus bp_parse_image(const BpNode *file_node, const BpNode *encoding_node, co
     const BpEncoding encoding = (BpEncoding)(choice + 1);
     for (size_t i = 0; i < scene->image_count; i++) {
         *image = scene->images[i];
-        if (strcmp((*image)->file, file) == 0 && (*image)->encoding == encoding &&
-            !((*image)->scale < scale) && !((*image)->scale > scale))
+        if (strcmp((*image)->file, file) == 0 && (*image)->inside == inside &&
+            (*image)->encoding == encoding && !((*image)->scale < scale) && !((*image)->scale > scale))
             return BP_OK;
     }
     *image = NULL;
@@ -79,8 +97,8 @@ BpStatus bp_parse_image(const BpNode *file_node, const BpNode *encoding_node, co
                             BP_IMAGES_MAX);
     BpStatus status = (flags & BP_PARSE_NO_CLOUDS) != 0
                           ? stand_in(encoding, scale, image, err)
-                          : read_file(file_node, file, encoding, scale, scene, image, err);
-    if (status == BP_OK) status = keep_image(file, *image, scene, err);
+                          : read_file(file_node, file, inside, encoding, scale, scene, image, err);
+    if (status == BP_OK) status = keep_image(file, inside, *image, scene, err);
     if (status == BP_OK && (*image)->notes[0] != '\0')
         status = bp_scene_note(scene, file, (*image)->notes, err);
     return status;

@@ -10,8 +10,9 @@
 #include "scene/scene.h"
 
 /* The image that the node names, as `encoding` and `scale`, nodes too, say; it is the
- * scene's, which has each file once. */
-BpStatus bp_parse_image(const BpNode *file, const BpNode *encoding, const BpNode *scale, unsigned flags,
-                        BpScene *scene, BpImage **image, BpError *err);
+ * scene's, which has each file once. `inside`: of the images in a glTF file this one, counted from 1; 0: the
+ * file is the image. */
+BpStatus bp_parse_image(const BpNode *file, const BpNode *encoding, const BpNode *scale, uint32_t inside,
+                        unsigned flags, BpScene *scene, BpImage **image, BpError *err);
 
 #endif

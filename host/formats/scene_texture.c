@@ -81,6 +81,7 @@ static BpStatus refuse_foreign_members(const BpNode *node, const BpTexture *text
                    {"file", BP_TEXTURE_FILE, NULL},
                    {"encoding", BP_TEXTURE_FILE, NULL},
                    {"scale", BP_TEXTURE_FILE, NULL},
+                   {"image", BP_TEXTURE_FILE, NULL},
                    {"wrap", BP_TEXTURE_FILE, NULL},
                    {"pattern", BP_TEXTURE_PATTERN, NULL},
                    {"octaves", BP_TEXTURE_PATTERN, NULL},
@@ -125,19 +126,26 @@ static BpStatus parse_image(const BpNode *node, unsigned flags, BpScene *scene, 
     const BpNode encoding = bp_node_member(node, "encoding");
     const BpNode scale = bp_node_member(node, "scale");
     const BpNode wrap = bp_node_member(node, "wrap");
+    const BpNode number = bp_node_member(node, "image");
+    uint32_t inside = 0;
     int choice = BP_WRAP_REPEAT;
     BP_TRY(bp_node_require(node, "file",
-                           "the path of a PNG, EXR, PFM or Radiance file, relative to the scene", err));
+                           "the path of a PNG, EXR, PFM or Radiance file, or with \"image\" of a glTF "
+                           "file, relative to the scene",
+                           err));
     BP_TRY(bp_node_choice(&wrap, bp_wrap_names, bp_wrap_count, &choice, err));
     texture->wrap = (BpWrap)choice;
-    return bp_parse_image(&file, &encoding, &scale, flags, scene, &texture->image, err);
+    BP_TRY(bp_node_integer(&number, 0, BP_IMAGES_MAX, &inside, err));
+    if (number.value != NULL) inside++;
+    return bp_parse_image(&file, &encoding, &scale, inside, flags, scene, &texture->image, err);
 }
 
 static BpStatus parse_texture(const BpNode *node, unsigned flags, BpScene *scene, BpTexture *texture,
                               BpError *err) {
-    static const char *const names[] = {"type",   "mapping",    "colors",  "size",     "origin", "up",
-                                        "turn",   "repeat",     "pattern", "octaves",  "seed",   "axis",
-                                        "period", "distortion", "file",    "encoding", "scale",  "wrap"};
+    static const char *const names[] = {"type",  "mapping",  "colors", "size",       "origin",
+                                        "up",    "turn",     "repeat", "pattern",    "octaves",
+                                        "seed",  "axis",     "period", "distortion", "file",
+                                        "image", "encoding", "scale",  "wrap"};
     int type = 0, mapping = 0, pattern = 0;
     if (!json_is_object(node->value))
         return bp_node_wrong(node, "an object: { \"type\": \"checker\", \"colors\": ... }", err);

@@ -144,6 +144,7 @@ void bp_scene_print_camera(const BpCamera *camera, FILE *out) {
 /* What follows the member that names it. */
 static BpStatus put_image(FILE *out, const BpImage *image, BpError *err) {
     BP_TRY(put_text(out, image->file, err));
+    if (image->inside > 0) fprintf(out, ", \"image\": %u", (unsigned)image->inside - 1);
     if (image->encoding != BP_ENCODING_OF_FORMAT)
         fprintf(out, ", \"encoding\": \"%s\"", image->encoding == BP_ENCODING_SRGB ? "srgb" : "linear");
     if (image->scale < 1 || image->scale > 1) {

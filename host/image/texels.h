@@ -31,7 +31,8 @@ typedef enum BpEncoding {
 } BpEncoding;
 
 typedef struct BpImage {
-    char *file; /* as the scene names it */
+    char *file;      /* as the scene names it */
+    uint32_t inside; /* which image of a glTF file it is, counted from 1; 0: the file is the image */
     BpEncoding encoding;
     double scale; /* that the texels have been multiplied by */
     uint32_t width, height;

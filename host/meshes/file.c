@@ -166,7 +166,10 @@ BpStatus bp_mesh_read(const char *path, BpMesh *mesh, BpError *err) {
 }
 
 void bp_mesh_clear(BpMesh *mesh) {
-    for (size_t i = 0; i < mesh->material_count; i++) free(mesh->materials[i].name);
+    for (size_t i = 0; i < mesh->material_count; i++) {
+        free(mesh->materials[i].name);
+        free(mesh->materials[i].image_file);
+    }
     free(mesh->materials);
     free(mesh->positions);
     free(mesh->faces);

@@ -182,6 +182,20 @@ static bool decode(const char *text, unsigned char *out, size_t *length) {
     return text[strspn(text, "=")] == '\0';
 }
 
+/* Of "data:...;base64,...". */
+static BpStatus decode_uri(const GltfData *data, const char *place, const char *uri, unsigned char **own,
+                           size_t *length, BpError *err) {
+    const char *const comma = strchr(uri, ',');
+    if (comma == NULL || comma - uri < 7 || strncmp(comma - 7, ";base64", 7) != 0)
+        return gltf_fail(data, place, err, "found data in the document that is not in base64");
+    *own = malloc(strlen(comma) + 1);
+    if (*own == NULL) return gltf_fail_memory(err);
+    if (decode(comma + 1, *own, length)) return BP_OK;
+    free(*own);
+    *own = NULL;
+    return gltf_fail(data, place, err, "found a character that base64 does not have");
+}
+
 static int hex_digit(char c) {
     return c >= '0' && c <= '9'   ? c - '0'
            : c >= 'a' && c <= 'f' ? c - 'a' + 10
@@ -228,13 +242,8 @@ static BpStatus read_buffer(GltfData *data, size_t number, BpError *err) {
         buffer->bytes = number == 0 ? data->chunk : NULL;
         buffer->length = number == 0 ? data->chunk_length : 0;
     } else if (strncmp(uri, "data:", 5) == 0) {
-        const char *const comma = strchr(uri, ',');
-        if (comma == NULL || comma - uri < 7 || strncmp(comma - 7, ";base64", 7) != 0)
-            return gltf_fail(data, place, err, "found data in the document that is not in base64");
-        buffer->bytes = buffer->own = malloc(strlen(comma) + 1);
-        if (buffer->own == NULL) return gltf_fail_memory(err);
-        if (!decode(comma + 1, buffer->own, &buffer->length))
-            return gltf_fail(data, place, err, "found a character that base64 does not have");
+        BP_TRY(decode_uri(data, place, uri, &buffer->own, &buffer->length, err));
+        buffer->bytes = buffer->own;
     } else if (strstr(uri, "://") != NULL) {
         return gltf_fail(data, place, err,
                          "found an address of the network, expected a file: download it, and name it there");
@@ -335,6 +344,31 @@ static BpStatus find_view(const GltfData *data, size_t number, size_t offset, Vi
                          offset, length);
     view->bytes = of->bytes + begin + offset;
     view->length = length - offset;
+    return BP_OK;
+}
+
+BpStatus gltf_image(const GltfData *data, size_t number, GltfImage *image, BpError *err) {
+    json_t *element = NULL;
+    char place[PLACE_SIZE];
+    size_t view_number = 0;
+    View view;
+    *image = (GltfImage){0};
+    snprintf(place, sizeof place, "images[%zu]", number);
+    BP_TRY(gltf_element(data, "images", number, &element, err));
+    const char *const uri = json_string_value(json_object_get(element, "uri"));
+    if (uri == NULL) {
+        BP_TRY(needed_whole(data, element, "bufferView", place, &view_number, err));
+        BP_TRY(find_view(data, view_number, 0, &view, err));
+        image->bytes = view.bytes;
+        image->length = view.length;
+    } else if (strncmp(uri, "data:", 5) == 0) {
+        BP_TRY(decode_uri(data, place, uri, &image->own, &image->length, err));
+        image->bytes = image->own;
+    } else {
+        image->name = strdup(uri);
+        if (image->name == NULL) return gltf_fail_memory(err);
+        unescape(image->name);
+    }
     return BP_OK;
 }
 

@@ -50,6 +50,16 @@ BpStatus gltf_whole(const GltfData *data, const json_t *object, const char *memb
 BpStatus gltf_numbers(const GltfData *data, const json_t *object, const char *member, const char *place,
                       double *values, size_t count, BpError *err);
 
+/* An image of the document: its bytes, which are the file's, or `own`, which the caller frees; or the file
+ * beside it that it names, in *name, which the caller frees. */
+typedef struct GltfImage {
+    const unsigned char *bytes;
+    size_t length;
+    unsigned char *own;
+    char *name;
+} GltfImage;
+BpStatus gltf_image(const GltfData *data, size_t number, GltfImage *image, BpError *err);
+
 /* The rows of an accessor. */
 typedef struct GltfRows {
     double *values; /* `components` for each row; the caller frees it */

@@ -33,6 +33,11 @@ typedef struct BpMeshMaterial {
         ke[3];    /* linear red, green and blue: diffuse reflectance, emitted radiance; finite, from 0 */
     double ni, d; /* index of refraction, above 0; opacity in [0, 1] */
     double metallic, roughness; /* of glTF, in [0, 1] */
+    /* The image that lies on its faces, multiplied by kd: a file, relative to the mesh, of the heap, or NULL;
+     * or one inside of a glTF file, counted from 1, or 0. */
+    char *image_file;
+    uint32_t image_inside;
+    bool image_clamped; /* it appears once, and its edges go on */
 } BpMeshMaterial;
 
 typedef struct BpMesh {
@@ -69,6 +74,11 @@ BpStatus bp_mesh_read(const char *path, BpMesh *mesh, BpError *err);
 /* The same of an open file with a descriptor, which stays open; `path` names it and tells its format. */
 BpStatus bp_mesh_read_stream(FILE *stream, const char *path, BpMesh *mesh, BpError *err);
 void bp_mesh_clear(BpMesh *mesh);
+
+/* Reads image number `number`, counted from 0, that lies inside of a glTF file: the bytes of a PNG, say. The
+ * caller frees *bytes. Fails with BP_ERR_SCENE where the file is no glTF or has no such image. */
+BpStatus bp_mesh_read_image(FILE *stream, const char *path, size_t number, unsigned char **bytes,
+                            size_t *length, BpError *err);
 
 typedef enum BpMeshEdgeFault {
     BP_MESH_EDGE_GOOD,   /* every edge has two faces, which go along it in opposite directions */

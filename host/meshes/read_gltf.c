@@ -45,6 +45,7 @@ typedef struct Gltf {
     size_t material_count;
     bool has_normals, has_colors, has_coordinates;
     size_t no_surfaces, morphs, translucent; /* primitives of points or lines; meshes with weights */
+    size_t no_images;                        /* base colours of which the image is not one that is read */
     Attributes last;                         /* whose vertices begin at `first_vertex`, of node `last_node` */
     size_t last_node, first_vertex, vertex_count;
 } Gltf;
@@ -236,6 +237,39 @@ static BpStatus read_map(const Gltf *g, const json_t *texture, const char *place
     return BP_OK;
 }
 
+/* The image of a material's base colour: a file beside the document, or one inside of it, if that is a PNG.
+ * Says nothing of what fails. */
+static BpStatus read_base_image(Gltf *g, const json_t *texture, const char *place, BpMeshMaterial *material) {
+    static const unsigned char png[4] = {0x89, 'P', 'N', 'G'};
+    enum { CLAMP_TO_EDGE = 33071 };
+    size_t number = 0, source = 0, sampler = 0, wrap = 0;
+    bool found = false, sampled = false;
+    json_t *element = NULL;
+    GltfImage image;
+    if (texture == NULL || length_of(g, "textures") == 0) return BP_OK;
+    BP_TRY(gltf_whole(&g->data, texture, "index", place, &found, &number, NULL));
+    BP_TRY(gltf_element(&g->data, "textures", number, &element, NULL));
+    BP_TRY(gltf_whole(&g->data, element, "sampler", place, &sampled, &sampler, NULL));
+    BP_TRY(gltf_whole(&g->data, element, "source", place, &found, &source, NULL));
+    if (!found || length_of(g, "images") == 0) { /* in a format that an extension names */
+        g->no_images++;
+        return BP_OK;
+    }
+    BP_TRY(gltf_image(&g->data, source, &image, NULL));
+    free(material->image_file);
+    material->image_file = image.name;
+    if (image.length > sizeof png && memcmp(image.bytes, png, sizeof png) == 0)
+        material->image_inside = (uint32_t)source + 1;
+    else if (image.name == NULL)
+        g->no_images++;
+    free(image.own);
+    if (!sampled) return BP_OK;
+    BP_TRY(gltf_element(&g->data, "samplers", sampler, &element, NULL));
+    BP_TRY(gltf_whole(&g->data, element, "wrapS", place, &found, &wrap, NULL));
+    material->image_clamped = wrap == CLAMP_TO_EDGE;
+    return BP_OK;
+}
+
 static BpStatus read_material(Gltf *g, size_t number, BpError *err) {
     json_t *element = NULL;
     char place[PLACE_SIZE];
@@ -255,7 +289,9 @@ static BpStatus read_material(Gltf *g, size_t number, BpError *err) {
     BP_TRY(gltf_numbers(&g->data, light, "emissiveStrength", place, &strength, 1, err));
     BP_TRY(gltf_numbers(&g->data, index, "ior", place, &ior, 1, err));
     BP_TRY(gltf_numbers(&g->data, clear, "transmissionFactor", place, &transmission, 1, err));
-    BP_TRY(read_map(g, json_object_get(pbr, "baseColorTexture"), place, &g->maps[number], err));
+    /* A texture that makes no sense is left out, and the mesh is read. */
+    if (read_map(g, json_object_get(pbr, "baseColorTexture"), place, &g->maps[number], NULL) != BP_OK)
+        g->maps[number] = (Map){.attribute = "TEXCOORD_0", .scale = {1, 1}};
     BpMeshMaterial *const material = &g->builder->mesh->materials[g->materials[number]];
     const char *const mode = json_string_value(json_object_get(element, "alphaMode"));
     const bool varies = json_object_get(pbr, "metallicRoughnessTexture") != NULL;
@@ -266,7 +302,7 @@ static BpStatus read_material(Gltf *g, size_t number, BpError *err) {
         material->ke[c] =
             json_object_get(element, "emissiveTexture") == NULL ? within(emitted[c] * strength, 0, 1e6) : 0;
     }
-    material->has_kd = !textured; /* the factor of a texture that is left out is mostly white */
+    material->has_kd = !textured; /* the factor of a texture is mostly white */
     material->has_ke = true;
     material->has_ni = ior > 0;
     material->ni = ior;
@@ -275,11 +311,26 @@ static BpStatus read_material(Gltf *g, size_t number, BpError *err) {
     material->has_surface = !varies && extension_of(element, "KHR_materials_unlit") == NULL;
     material->metallic = within(metallic, 0, 1);
     material->roughness = within(roughness, 0, 1);
+    const BpStatus status = read_base_image(g, json_object_get(pbr, "baseColorTexture"), place, material);
+    if (status == BP_ERR_MEMORY) return gltf_fail_memory(err);
+    g->no_images += status != BP_OK;
     return BP_OK;
 }
 
+/* Those of base colours are offered with their materials. */
 static void note_textures(const Gltf *g) {
-    if (length_of(g, "textures") > 0) mesh_note(g->builder->mesh, "textures left out");
+    char number[32];
+    size_t used = 0;
+    for (size_t m = 0; m < g->builder->mesh->material_count; m++) {
+        const BpMeshMaterial *const material = &g->builder->mesh->materials[m];
+        used += material->image_file != NULL || material->image_inside > 0;
+    }
+    if (g->no_images > 0)
+        mesh_note(g->builder->mesh, "%s texture%s of base colours left out, since only PNG is read",
+                  bp_format_whole(g->no_images, number, sizeof number), bp_plural(g->no_images));
+    if (length_of(g, "textures") > used + g->no_images)
+        mesh_note(g->builder->mesh, "%s",
+                  used + g->no_images > 0 ? "textures of other kinds left out" : "textures left out");
 }
 
 static BpStatus read_materials(Gltf *g, BpError *err) {
@@ -654,5 +705,37 @@ BpStatus mesh_read_gltf(MeshBuilder *builder, BpError *err) {
     free(g.materials);
     free(g.base_colors);
     free(g.maps);
+    return status;
+}
+
+static BpStatus read_image(Input *input, const char *path, size_t number, unsigned char **bytes,
+                           size_t *length, BpError *err) {
+    GltfData data;
+    GltfImage image = {0};
+    BpStatus status = gltf_read(&data, input, path, err);
+    if (status == BP_OK) status = gltf_image(&data, number, &image, err);
+    if (status == BP_OK && image.bytes == NULL)
+        status = gltf_fail(&data, "images", err,
+                           "found image %zu in the file \"%.80s\", expected it inside: name that file",
+                           number, image.name);
+    if (status == BP_OK) {
+        *bytes = malloc(image.length + 1);
+        *length = image.length;
+        status = *bytes != NULL ? BP_OK : gltf_fail_memory(err);
+    }
+    if (status == BP_OK) memcpy(*bytes, image.bytes, image.length);
+    free(image.own);
+    free(image.name);
+    gltf_clear(&data);
+    return status;
+}
+
+BpStatus bp_mesh_read_image(FILE *stream, const char *path, size_t number, unsigned char **bytes,
+                            size_t *length, BpError *err) {
+    Input input = {0};
+    *bytes = NULL;
+    BpStatus status = input_init(&input, stream, path, err);
+    if (status == BP_OK) status = read_image(&input, path, number, bytes, length, err);
+    input_clear(&input);
     return status;
 }

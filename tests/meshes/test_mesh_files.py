@@ -273,7 +273,7 @@ class Obj(MeshTest):
             {"name": "lamp light", "faces": 2, "kd": [0, 0, 0], "ke": [4, 4, 3], "d": 0.75}])
         self.assertEqual(found["face_material"], [0, 0, 0, 0, 1, 1])
         self.assertEqual([tuple(f) for f in found["faces"]], TRIANGLES[:4] + [(0, 4, 5), (0, 5, 1)])
-        for note in ("textures left out", "1 line left out", "1 point left out"):
+        for note in ("1 line left out", "1 point left out"):
             self.assertIn(note, found["notes"])
         found = self.of("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl a\nf 1 2 3\nusemtl b\nusemtl\nf 1 2 3\n")
         self.assertEqual(found["face_material"], [-1, 0, -1])

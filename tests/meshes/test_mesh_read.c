@@ -218,6 +218,43 @@ static void gltf(void **unused) {
     bp_mesh_clear(&mesh);
 }
 
+static void check_coordinates(const BpMesh *mesh, size_t face, const double expected[6]) {
+    assert_non_null(mesh->face_coordinates);
+    for (int k = 0; k < 6; k++) assert_true((double)mesh->face_coordinates[face][k] == expected[k]);
+}
+
+/* Of one triangle in each format; of another that lacks some they are missing. */
+static void coordinates(void **unused) {
+    (void)unused;
+    static const char obj[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0.5\nvt 2 -1\nvt 0\nf 1/1 2/2 3/-1\n"
+                              "f 3/1 2/2 1/9\nf 3/2 2/1 1\n";
+    BpMesh mesh = read_text("a.obj", obj);
+    check_coordinates(&mesh, 0, (const double[6]){0.25, 0.5, 2, -1, 0, 0});
+    for (int face = 1; face < 3; face++)
+        for (int k = 0; k < 6; k++) assert_true(isnan(mesh.face_coordinates[face][k]));
+    bp_mesh_clear(&mesh);
+    static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                              "property float z\nelement face 1\nproperty list uchar float texcoord\n"
+                              "property list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+                              "8 0.25 0.5 2 -1 3 4 5 6 4 0 1 2 3\n";
+    mesh = read_text("a.ply", ply);
+    check_coordinates(&mesh, 0, (const double[6]){0.25, 0.5, 2, -1, 3, 4});
+    check_coordinates(&mesh, 1, (const double[6]){0.25, 0.5, 3, 4, 5, 6});
+    bp_mesh_clear(&mesh);
+    char gltf_text[] =
+        "{'asset': {'version': '2.0'}, 'bufferViews': [{'buffer': 0, 'byteLength': 36}, {'buffer': 0, "
+        "'byteOffset': 36, 'byteLength': 24}], 'accessors': [{'bufferView': 0, 'componentType': 5126, "
+        "'count': 3, 'type': 'VEC3'}, {'bufferView': 1, 'componentType': 5126, 'count': 3, 'type': 'VEC2'}], "
+        "'buffers': [{'byteLength': 60, 'uri': 'data:application/octet-stream;base64,"
+        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAACAPgAAAD8AAABAAACAvwAAAAAAAIA/'}], 'meshes': "
+        "[{'primitives': [{'attributes': {'POSITION': 0, 'TEXCOORD_0': 1}}]}], 'nodes': [{'mesh': 0}]}";
+    for (char *at = gltf_text; *at != '\0'; at++)
+        if (*at == '\'') *at = '"';
+    mesh = read_text("a.gltf", gltf_text);
+    check_coordinates(&mesh, 0, (const double[6]){0.25, 0.5, 2, 2, 0, 0});
+    bp_mesh_clear(&mesh);
+}
+
 static void off_colors(void **unused) {
     (void)unused;
     BpMesh mesh = read_text(
@@ -321,6 +358,7 @@ int main(void) {
                                        cmocka_unit_test(ply_lists),
                                        cmocka_unit_test(stl_welds),
                                        cmocka_unit_test(gltf),
+                                       cmocka_unit_test(coordinates),
                                        cmocka_unit_test(off_colors),
                                        cmocka_unit_test(edges),
                                        cmocka_unit_test(no_area),

@@ -5,10 +5,13 @@ file's own.
 
 Run as: PYTHONPATH=tests/support python3 test_mesh_scenes.py PROGRAM SOURCE_DIR
 """
+import base64
 import json
 import math
 import os
+import struct
 import unittest
+import zlib
 
 import samples
 from cli import ProgramTest, main
@@ -48,6 +51,13 @@ def placed(point, scale=(1, 1, 1), rotate=(0, 0, 0), translate=(0, 0, 0)):
     matrix = product(about_z, product(about_y, about_x))
     scaled = [point[i] * scale[i] for i in range(3)]
     return [sum(matrix[i][j] * scaled[j] for j in range(3)) + translate[i] for i in range(3)]
+
+
+def png(width, height, colour):
+    def chunk(kind, content):
+        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+    rows = b"".join(b"\0" + bytes(part for x in range(width) for part in colour(x, y)) for y in range(height))
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 
 
 class Meshes(ProgramTest):
@@ -240,6 +250,81 @@ class Meshes(ProgramTest):
             self.assert_different(picture, self.picture(self.scene("c.json", {"file": "cube.obj", "material": "clay", "scale": scale}, spheres=[GROUND])))
         self.assertIn("its texture coordinates are not used, since no texture lies on it", self.succeed("scene", "c.json").errors)
         self.assertNotIn("texture coordinates", self.succeed("scene", "m.json").errors)
+
+    def test_images_of_materials(self):
+        """map_Kd of MTL and base colours of glTF, beside the file or inside of it, become textures: the same picture of a square."""
+        def colour(x, y):
+            return [(40 * x + 90 * y + 70 * c) % 256 for c in range(3)]
+        painting = png(5, 3, colour)
+        self.write("sub.png", painting)
+        self.write("two words.png", painting)
+        os.mkdir(self.path("maps"))
+        self.write("maps/a.png", painting)
+        self.write("a.jpg", b"\xff\xd8\xff\xe0 no PNG")
+        places = [(-1, 0, 0), (1, 0, 0), (1, 1.5, 0), (-1, 1.5, 0)]
+        square = "mtllib m.mtl\n" + "".join("v %g %g %g\n" % p for p in places) + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl paint\n"
+        faces = "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n"
+        self.write("m.mtl", "newmtl paint\nmap_Kd sub.png\n")
+        self.write("a.obj", square + faces)
+        document = json.loads(self.succeed("scene", "a.obj").stdout)
+        plain = {"type": "image", "up": [0, 1, 0], "turn": 0, "repeat": [1, 1]}
+        self.assertEqual(document["textures"], {"paint": {**plain, "file": "sub.png"}})
+        self.assertEqual(document["materials"]["paint"], {"type": "lambertian", "albedo": {"texture": "paint"}})
+        expected = self.picture("a.obj", "--width", 40, "--spp", 4)
+        self.write("m.mtl", "newmtl paint\nKd 0.5 0.5 0.5\n")
+        self.assert_different(self.picture("a.obj", "--width", 40, "--spp", 4), expected)
+        for line, says in (("map_Kd maps\\a.png", None), ("map_Kd two words.png", None), ("map_Kd -clamp off -mm 0 1 sub.png", None), ("map_Kd -blendu on two words.png", None),
+                           ("map_Kd -s 2 2 sub.png", "textures are neither moved nor scaled"), ("map_Kd -o 0.5 two words.png", "textures are neither moved nor scaled")):
+            self.write("m.mtl", f"newmtl paint\n{line}\n")
+            self.assert_same(self.picture("a.obj", "--width", 40, "--spp", 4), expected, line)
+            if says is not None:
+                self.assertIn(says, self.succeed("scene", "a.obj").errors)
+        self.write("m.mtl", "newmtl paint\nmap_Kd -clamp on sub.png\n")
+        self.assertEqual(json.loads(self.succeed("scene", "a.obj").stdout)["textures"]["paint"]["wrap"], "clamp")
+        for line, content, why in (("map_Kd gone.png", square + faces, "no such file that is a PNG"), ("map_Kd a.jpg", square + faces, "no such file that is a PNG"),
+                                   ("map_Kd sub.png", square + faces.replace("3/3\n", "3\n"), "not all of its faces have texture coordinates")):
+            self.write("m.mtl", f"newmtl paint\n{line}\n")
+            self.write("b.obj", content)
+            said = self.succeed("scene", "b.obj")
+            self.assertNotIn("textures", json.loads(said.stdout))
+            self.assertIn(why, said.errors)
+
+        # glTF: v grows downwards. Its base is a coat over the same colours in a document, so the scenes are compared with the material of the other.
+        uvs = [(0, 1), (1, 1), (1, 0), (0, 0)]
+
+        def of(image, factor=1, wrap=None, content=None, **image_members):
+            made = samples.gltf(places, [(0, 1, 2), (0, 2, 3)], attributes=[("TEXCOORD_0", uvs, {"form": "VEC2"})], primitive={"material": 0}, materials=[
+                {"name": "paint", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "baseColorFactor": [factor] * 3 + [1], "metallicFactor": 0}}],
+                textures=[{"source": 0, **({"sampler": 0} if wrap else {})}], **({"samplers": [{"wrapS": wrap}]} if wrap else {}))
+            made.add(images=[{"uri": image} if image else {"bufferView": made.view(content or painting), "mimeType": "image/png"}])
+            self.write("a.glb", made.binary())
+            return json.loads(self.succeed("scene", "a.glb").stdout)
+        pictures = []
+        for image in ("sub.png", "two%20words.png", None, "data:image/png;base64," + base64.b64encode(painting).decode()):
+            document = of(image)
+            inside = image is None or image.startswith("data")
+            self.assertEqual(document["textures"]["paint"], {**plain, "file": "a.glb", "image": 0} if inside else {**plain, "file": image.replace("%20", " ")})
+            self.assertEqual(document["materials"]["paint"]["albedo"], {"texture": "paint"})
+            pictures.append(self.picture("a.glb", "--width", 40, "--spp", 4))
+        for picture in pictures[1:]:
+            self.assert_same(picture, pictures[0])
+        document["materials"]["paint"] = {"type": "lambertian", "albedo": {"texture": "paint"}}
+        self.write("g.json", document)
+        self.assert_same(self.picture("g.json", "--width", 40, "--spp", 4), expected)
+        self.assertEqual(json.loads(self.succeed("scene", "g.json").stdout)["textures"]["paint"]["image"], 0)
+        self.assertEqual(of(None, 0.5)["textures"]["paint"]["scale"], 0.5)
+        self.assertEqual(of(None, wrap=33071)["textures"]["paint"]["wrap"], "clamp")
+        self.assertNotIn("textures", of(None, content=b"\xff\xd8\xff\xe0 no PNG"))
+        self.assertIn("1 texture of base colours left out, since only PNG is read", self.succeed("scene", "a.glb").errors)
+        # What is inside of a file.
+        of("sub.png")
+        for number, says in ((0, 'found image 0 in the file "sub.png"'), (1, "images"), (-1, "found -1")):
+            document["textures"]["paint"] = {"type": "image", "file": "a.glb", "image": number}
+            self.write("g.json", document)
+            self.fail_with(2, "render", "g.json", "-o", "x.png", says=[says])
+        document["textures"]["paint"] = {"type": "image", "file": "sub.png", "image": 0}
+        self.write("g.json", document)
+        self.fail_with(2, "render", "g.json", "-o", "x.png", says=["sub.png"])
 
     def test_check_coordinates(self):
         """The reference lays the texture on the same places."""

@@ -165,6 +165,11 @@ def smooth(*names):
     return Script("tests/agree/test_smooth.py", tuple(f"Smooth.test_{name}" for name in names), "4 closed forms")
 
 
+def coordinates(*names):
+    """Tests of tests/textures/test_texture_coordinates.py."""
+    return Script("tests/textures/test_texture_coordinates.py", tuple(f"Coordinates.test_{name}" for name in names), "9 textures")
+
+
 def patch(path, find, replace):
     return (path, find, replace)
 
@@ -172,6 +177,7 @@ def patch(path, find, replace):
 # A patch of kernel text names no file: the text must stand exactly once in all of kernels/.
 KERNEL, PACK, TRANSFER = "kernels", "host/packed/pack.c", "host/image/transfer.c"
 SHINING = "kernels/light/triangle_lamps.cl"
+MAP = "kernels/texture/triangle_map.cl"
 FOLD, BENT = "kernels/bsdf/fold.cl", "kernels/integrator/smooth_surface.cl"
 
 MUTANTS = [
@@ -491,10 +497,10 @@ MUTANTS = [
            [patch("host/meshes/read_obj.c", "number < 0 ? count + number : number - 1;", "number < 0 ? count + number - 1 : number - 1;")],
            [test("test_mesh_read", "obj_numbers")]),
     Mutant("texture coordinates for vertices", "meshes: the last number of a corner for the first",
-           [patch("host/meshes/read_obj.c", "static const char *take_others(const char *at, int64_t *normal) {",
-                  "static const char *take_others(const char *at, int64_t *vertex, int64_t *normal) {"),
-            patch("host/meshes/read_obj.c", "if (end != NULL && i == 1) *normal = number;", "if (end != NULL) *vertex = number;\n        if (end != NULL && i == 1) *normal = number;"),
-            patch("host/meshes/read_obj.c", "end = take_others(end, &normal);", "end = take_others(end, &number, &normal);")],
+           [patch("host/meshes/read_obj.c", "static const char *take_others(const char *at, int64_t others[2]) {",
+                  "static const char *take_others(const char *at, int64_t *vertex, int64_t others[2]) {"),
+            patch("host/meshes/read_obj.c", "        if (end != NULL) at = end;\n    }\n    return is_blank", "        if (end != NULL) *vertex = others[i];\n        if (end != NULL) at = end;\n    }\n    return is_blank"),
+            patch("host/meshes/read_obj.c", "end = take_others(end, others);", "end = take_others(end, &number, others);")],
            [test("test_mesh_read", "obj_numbers")]),
     Mutant("joined lines cut", "meshes: a backslash at the end of a line of OBJ",
            [patch("host/meshes/read_obj.c", "const bool goes_on = length > 0 && ", "const bool goes_on = length > 4000 && ")],
@@ -1204,7 +1210,36 @@ MUTANTS = [
     Mutant("faces count by their number", "classic: vertex normals that depend on how polygons are cut",
            [patch("host/scene/vertex_normals.c", "sums[face[k]][a] += angle * (normal[a] / length);", "sums[face[k]][a] += angle > 0 ? normal[a] / length : 0;")], [mesh_scenes("smooth")]),
     Mutant("a normal's number is off by one", "classic: OBJ counts from 1",
-           [patch("host/meshes/read_obj.c", "obj->builder->normal_count + number : number - 1;", "obj->builder->normal_count + number : number;")], [mesh_scenes("smooth")]),
+           [patch("host/meshes/read_obj.c", "(int64_t)count + number : number - 1;\n    return place >= 0 &&", "(int64_t)count + number : number;\n    return place >= 0 &&")], [mesh_scenes("smooth"), test("test_mesh_read", "coordinates")]),
+    # ---- textures on triangles -------------------------------------------------------------------------------
+    Mutant("u and v of two vertices are exchanged", "classic: b for c",
+           [patch(MAP, "triangle_between(shares, of[0], of[2], of[4], &place.tile_u, &place.u);", "triangle_between(shares, of[0], of[4], of[2], &place.tile_u, &place.u);")], [coordinates("values")]),
+    Mutant("a triangle has the coordinates of another", "this program: where a slot's coordinates stand",
+           [patch(MAP, "const vuint at = (number - lane) * 6u + lane;", "const vuint at = lane;")], [coordinates("many")]),
+    Mutant("v grows downwards", "classic: the upper left corner of an image for the lower left one",
+           [patch(MAP, "    *v = place->v;\n", "    *v = splat(1) - place->v;\n")], [coordinates("head_on"), coordinates("values")]),
+    Mutant("coordinates by shares that are floats", "classic: a wide ground whose texture shakes",
+           [patch("kernels/shape/triangle_robust.cl", "wide_madd(shares->of_b, by_b, wide_madd(shares->of_c, by_c, wide(a)));",
+                  "wide_madd(wide(shares->b), by_b, wide_madd(wide(shares->c), by_c, wide(a)));")], [coordinates("wide_ground")]),
+    Mutant("tiles are taken off once they are rounded", "classic: a wide ground whose texture shakes",
+           [patch("kernels/shape/triangle_robust.cl", "above = wide_near(wide_add_real(number, -nearest));", "above = wide_near(number) - nearest;")], [coordinates("wide_ground")]),
+    Mutant("rows end at the edge of a tile", "images on spheres: nothing lies beyond a pole",
+           [patch(KERNEL, "image.rows_ring = place->laid & vbool_not(clamped);", "image.rows_ring = vbool_none;")], [coordinates("seams")]),
+    Mutant("a clamped image repeats", "this program: the tile is forgotten",
+           [patch(MAP, "choose(tile > splat(0), splat(1), place)", "place")], [coordinates("values")]),
+    Mutant("a checker's last row of a tile is doubled", "checkers on spheres: the pole belongs to the last row",
+           [patch(KERNEL, "to_uint(floor(v * upwards)), field_at(v, upwards));", "field_at(v, upwards - splat(1)), field_at(v, upwards));")], [coordinates("checker")]),
+    Mutant("a lamp's image lies around it as around a sphere", "this program: rays to triangles that emit",
+           [patch(KERNEL, "triangle_map(scene, slot, visible, &shares);", "off_triangles();")], [coordinates("lamp")]),
+    Mutant("sides of a box stand on their heads", "this program: which corner has u and v of 0",
+           [patch("host/formats/scene_triangles.c", "(corners[t][k] - first + 4) % 4", "(corners[t][k] + first + 4) % 4")], [coordinates("box")]),
+    Mutant("coordinates of a mirrored mesh stay with their corners", "this program: vertices change their order",
+           [patch("host/formats/mesh_triangles.c", "[2 * (mirrored && k > 0 ? 3 - k : k)]", "[2 * k]")], [mesh_scenes("coordinates")]),
+    Mutant("glTF's images on their heads", "meshes: v grows downwards there",
+           [patch("host/meshes/read_gltf.c", "from[0], 1 - from[1], false", "from[0], from[1], false")], [test("test_mesh_read", "coordinates")]),
+    Mutant("a corner without coordinates is at 0", "meshes: missing numbers",
+           [patch("host/meshes/builder.c", "face[2 * k + a] = is_missing ? NAN : b->coordinates", "face[2 * k + a] = chosen[k] >= b->coordinate_count ? 0 : b->coordinates")],
+           [test("test_mesh_read", "coordinates")]),
     # ---- lamps that move, and lamps behind boundaries --------------------------------------------------------
     Mutant("lamps stay where the shutter opens", "rays to where a lamp was",
            [patch(KERNEL, "child->centre = choose3(lamp, centre_at(&scene->geometry, slot, time, child->centre), child->centre);",

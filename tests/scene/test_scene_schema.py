@@ -31,6 +31,7 @@ GOOD = {
                {"file": "a.obj", "materials": {"bark": "m"}, "scale": [1, -2, 1], "smooth": True}],
     "transfer": "srgb",
     "textures": {
+        "embedded": {"type": "image", "file": "a.glb", "image": 2, "wrap": "clamp"},
         "s": {"type": "checker", "colors": [[0, 0.5, 1], 3], "size": 0.1},
         "n": {"type": "noise", "pattern": "wood", "colors": [0, 1], "size": 2, "origin": [1, 2, 3], "octaves": 12, "seed": 4294967295, "axis": "y",
               "period": 0.1, "distortion": 0},

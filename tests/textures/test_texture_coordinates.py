@@ -224,12 +224,13 @@ class Coordinates(ProgramTest):
             self.assertGreater(self.compare(camera, corners, moved, None, picture_of, 1e-4), 100)
 
     def test_wide_ground(self):
-        """A ground of two million tiles each way, seen from one tile above: as sharp as a small one."""
-        half = 1e6
+        """A ground of a million tiles each way, seen from one tile above, and counted from far away: as sharp as a small one."""
+        half, far = 2.0 ** 19, 2.0 ** 18
         camera = {"image_width": 32, "image_height": 32, "lookfrom": [300.25, 1, 200.5], "lookat": [300.75, 0, 199.25], "vfov": 60}
         corners = [[-half, 0, half], [half, 0, half], [0, 0, -half]]  # less the camera's place all of them are floats
-        uvs = [[-half, -half], [half, -half], [0, half]]
-        self.assertGreater(self.compare(camera, corners, uvs, None, lambda u, v: picture_of(u, v) if abs(u - 300) < 20 and abs(v + 200) < 20 else None, 2e-3), 300)
+        uvs = [[far - half, far - half], [far + half, far - half], [far, far + half]]
+        self.assertGreater(self.compare(camera, corners, uvs, None, lambda u, v: picture_of(u, v) if abs(u - far - 300) < 20 and abs(v - far + 200) < 20 else None,
+                                        2e-3), 300)
 
     def test_seams(self):
         """Across both seams of tiles the image goes on: half of the colours of either side."""
@@ -240,6 +241,20 @@ class Coordinates(ProgramTest):
             rows = self.render(self.document(camera, triangles=[{"vertices": corners, "uvs": uvs, "material": "m"}]))
             for found, part in zip(rows[0][0], picture_of(u, v)):
                 self.assertAlmostEqual(found / part, 1, delta=1e-5, msg=f"{u}, {v}")
+
+    def test_many(self):
+        """A quad, and the same place as 48 triangles, whose coordinates stand in many leaves."""
+        camera = {"image_width": 48, "image_height": 16, "lookfrom": [0.1, 0.2, 4], "lookat": [0, 0, 0], "vfov": 25}
+        whole = self.render(self.document(camera, quads=[{"corner": [-2, -0.5, 0], "u": [4, 0, 0], "v": [0, 1, 0], "material": "m"}]))
+        strips = []
+        for i in range(24):
+            (a, u), (b, w) = ((-2 + 4 * k / 24, k / 24) for k in (i, i + 1))
+            strips += [{"vertices": [[a, -0.5, 0], [b, -0.5, 0], [b, 0.5, 0]], "uvs": [[u, 0], [w, 0], [w, 1]], "material": "m"},
+                       {"vertices": [[a, -0.5, 0], [b, 0.5, 0], [a, 0.5, 0]], "uvs": [[u, 0], [w, 1], [u, 1]], "material": "m"}]
+        for y, row in enumerate(self.render(self.document(camera, triangles=strips))):
+            for x, pixel in enumerate(row):
+                for found, part in zip(pixel, whole[y][x]):
+                    self.assertAlmostEqual(found, part, delta=1e-3, msg=f"{x}, {y}")
 
     def test_vertices(self):
         """Each vertex has its own coordinates, whichever way the triangle is listed."""
