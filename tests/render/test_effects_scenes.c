@@ -40,6 +40,8 @@ static const struct {
     {"lamps", "lambertian metal dielectric emission light_sampling roulette"},
     {"lobes", "lambertian metal dielectric oren_nayar rough_metal glossy rough_dielectric light_sampling "
               "discs roulette"},
+    {"maps", "lambertian emission oren_nayar glossy light_sampling discs textures images triangles "
+             "triangle_lamps roulette texture_coordinates; tree"},
     {"next-checkered-spheres", "lambertian textures roulette"},
     {"next-bouncing-spheres", "lambertian metal dielectric lens textures motion roulette; tree"},
     {"next-earth", "lambertian textures images roulette"},
