@@ -31,12 +31,23 @@ static void check_materials(const BpMesh *mesh) {
             require(isfinite(m->kd[c]) && m->kd[c] >= 0 && isfinite(m->ke[c]) && m->ke[c] >= 0);
         require(!m->has_ni || (isfinite(m->ni) && m->ni > 0));
         require(!m->has_d || (m->d >= 0 && m->d <= 1));
+        require(m->image_file == NULL || m->image_inside == 0);
         faces += m->face_count;
     }
     require(faces <= mesh->face_count);
 }
 
+static void check_coordinates(const BpMesh *mesh) {
+    for (size_t f = 0; f < mesh->face_count && mesh->face_coordinates != NULL; f++)
+        for (int k = 0; k < 6; k++) {
+            const float number = mesh->face_coordinates[f][k];
+            require(isnan(number) == isnan(mesh->face_coordinates[f][0]));
+            require(isnan(number) || fabsf(number) <= 1e6f);
+        }
+}
+
 static void check_mesh(const BpMesh *mesh) {
+    check_coordinates(mesh);
     BpMeshEdge edge;
     BpError err = {0};
     require(mesh->face_count > 0);

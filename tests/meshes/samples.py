@@ -180,6 +180,8 @@ def seeds():
         "meshes_obj": {"plain": cube.encode(), "mtl": OBJ_WITH_MTL.encode() + b"\0" + MTL.encode(), "l": obj(L_SHAPE, [range(6)]).encode(),
                        "colours": b"v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n", "no-corners": b"v 0 0 0\nf\n", "curve": b"v 0 0 0\ncstype bezier\n",
                        "coordinates": b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.5 0.25\nvt 2 -1 7\nvt x\nf 1/1 2/2/1 3/-1 4/9\nf 1 2/2 3/3\nvt 0.125\n",
+                       "images": b"mtllib m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n\0newmtl a\nmap_Kd -s 1 2 -clamp on -mm 0 1 maps\\a b.png\n"
+                                 b"newmtl b\nmap_Kd -o\nmap_Kd -blendu\nmap_Kd -\nmap_Kd -s 1 2 3 4 5\nmap_Kd  \n",
                        "bow": b"v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n",
                        "holed": b"v 0 0 0\nv 8 0 0\nv 8 8 0\nv 0 8 0\nv 2 2 0\nv 2 6 0\nv 6 6 0\nv 6 2 0\nf 1 2 3 4 1 5 6 7 8 5\n"},
         "meshes_stl": {"text": stl_text(triangles=TRIANGLES[:3]).encode(), "binary": stl_binary(triangles=TRIANGLES[:4], attribute=3),
@@ -196,6 +198,9 @@ def seeds():
                         "coordinates": gltf(attributes=[("TEXCOORD_0", [(i, 0.25 * i) for i in range(8)], {"form": "VEC2"})], primitive={"material": 0},
                                             materials=[{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions": {
                                                 "KHR_texture_transform": {"offset": [0.5, 1], "rotation": 0.3, "scale": [2, -1]}}}}}]).binary(),
+                        "images": gltf(primitive={"material": 0}, materials=[{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+                                       textures=[{"source": 0, "sampler": 0}], samplers=[{"wrapS": 33071}],
+                                       images=[{"uri": "data:image/png;base64,iVBORw0KGgo="}, {"uri": "a%20b.png"}, {"bufferView": 0}]).text(),
                         "strip": gltf(triangles=[(0, 1, 2, 3)], mode=5, index="B").text(), "fan": gltf(index=None, mode=6).binary()},
         "meshes_off": {"plain": off().encode(), "colours": off(keyword="COFF", behind_vertex=" 255 0 9 255").encode(),
                        "faces": off(behind_face=" 0.5 0.25 1").encode(), "all": off(keyword="STCNOFF", behind_vertex=" 0 0 1 1 0 0 1 0.5 0.5").encode(),
