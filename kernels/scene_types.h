@@ -274,10 +274,19 @@ typedef struct PackedVariation {
  * from the top to the middle, the squared sine of half the angle to the top. */
 #define TEXEL_UINTS 3u
 #define SHARE_BITS 24
-/* Spheres that light passes through, each as its slot and the number of the medium inside, the smallest
+/* Shapes that light passes through, each as its slot and the number of the medium inside, the smallest
  * first: a point lies in the medium of the first that it is inside. The last entry is NO_SLOT and the medium
  * outside of all. */
 #define BOUNDARY_UINTS 2u
+/* For kernels that know media in bodies, `boundaries` begins otherwise: with the place of the first entry
+ * there, the bodies that the camera is in, as bits, and how many bodies there are. Then come, for each
+ * material, the bits of bodies that a path is in on the inner side of such a surface, and on the outer side;
+ * a body's triangles have an entry of their own in the table of materials. For the slot of a body stands
+ * BODY_SLOT and its number. */
+#define BODY_HEAD 3u
+#define BODY_MASKS 2u
+#define BODIES_MAX 32u
+#define BODY_SLOT 0xfffffe00u
 /* Focusers (light/focusers.cl) end with one in NO_SLOT. `target_lamps`: the slot of each target's lamp, or
  * DISC_SLOT and the number of a disc. */
 /* The tree of lamps (light/lamps.cl). A node is LAMP_WIDTH children as structure of arrays, LAMP_WIDTH reals
@@ -345,7 +354,7 @@ typedef struct PackedVariation {
     X(UINTS, packed_uint, sky_columns, sky_column_count, "the table of the background")                      \
     X(REALS, real, sky_heights, sky_height_count, "the table of the background")                             \
     X(REALS, real, media, medium_count * MEDIUM_REALS, "the media")                                          \
-    X(UINTS, packed_uint, boundaries, boundary_count * BOUNDARY_UINTS, "the boundaries of media")
+    X(UINTS, packed_uint, boundaries, boundary_uints, "the boundaries of media")
 #define SCENE_ARRAYS_OF_FOCUSERS(X)                                                                          \
     X(REALS, real, focusers, focuser_count * FOCUSER_REALS, "the table of focusers")                         \
     X(UINTS, packed_uint, focuser_places, focuser_count * FOCUSER_UINTS, "the table of focusers")            \

@@ -213,6 +213,11 @@ static uint64_t mix_medium(uint64_t hash, const BpScene *scene, uint32_t number)
     return mix_real(hash, medium->anisotropy);
 }
 
+static uint64_t mix_interior(uint64_t hash, const BpScene *scene, size_t shape) {
+    const uint32_t interior = bp_shape_interior(scene, shape);
+    return interior != 0 ? mix_medium(hash, scene, interior) : hash;
+}
+
 /* What a material has beside hash_material(), on a shape with an albedo of its own or BP_NO_ALBEDO. */
 static uint64_t mix_colours(uint64_t hash, const BpScene *scene, const BpMaterial *material,
                             uint32_t albedo) {
@@ -274,7 +279,7 @@ uint64_t bp_scene_hash(const BpScene *scene) {
         if (sphere->material != known) material_hash = hash_material(&scene->materials[sphere->material]);
         known = sphere->material;
         hash = mix_sphere(mix(hash, material_hash), scene, sphere);
-        if (bp_sphere_interior(scene, i) != 0) hash = mix_medium(hash, scene, bp_sphere_interior(scene, i));
+        hash = mix_interior(hash, scene, i);
         if (bp_sphere_moves(scene, i))
             hash = mix_reals(mix(hash, 0x6d6f76657321u), bp_sphere_end(scene, i), 3);
     }
@@ -286,6 +291,9 @@ uint64_t bp_scene_hash(const BpScene *scene) {
         known = triangle->material;
         for (int k = 0; k < 3; k++) hash = mix_reals(mix(hash, material_hash), triangle->vertices[k], 3);
         hash = mix_colours(hash, scene, &scene->materials[triangle->material], triangle->albedo);
+        /* Bodies may be the same triangles in other groups. */
+        if (bp_body_of(scene, i) != BP_NO_BODY) hash = mix(hash, bp_body_of(scene, i));
+        hash = mix_interior(hash, scene, scene->sphere_count + i);
         const float(*const normals)[3] = bp_triangle_normals(scene, i);
         for (int k = 0; k < 9 && normals != NULL; k++) hash = mix_real(hash, (double)normals[k / 3][k % 3]);
         const float *const at = bp_triangle_coordinates(scene, i);
@@ -301,6 +309,7 @@ uint64_t bp_scene_hash(const BpScene *scene) {
         hash = mix_real(mix(hash, material_hash), capsule->radius);
         for (int k = 0; k < 2; k++)
             hash = mix_colours(mix_reals(hash, capsule->ends[k], 3), scene, material, capsule->albedo[k]);
+        hash = mix_interior(hash, scene, scene->sphere_count + scene->triangle_count + i);
     }
     return hash;
 }

@@ -84,6 +84,32 @@ static BpStatus check_glass(const BpMesh *mesh, const BpMeshUse *use, const BpSc
     return status;
 }
 
+/* ---- what fills it ---- */
+
+static bool lets_light_in(const BpScene *scene, uint32_t material) {
+    return bp_material_is(scene->materials[material].kind, BP_HAS_INSIDE);
+}
+
+static BpStatus check_interior(const BpMesh *mesh, const BpMeshUse *use, const BpScene *scene, BpError *err) {
+    bool lets_in = use->interior == 0 || mesh->face_count == 0;
+    for (size_t f = 0; f < mesh->face_count && !lets_in; f++)
+        lets_in = lets_light_in(scene, material_of(mesh, use, f));
+    if (lets_in) return BP_OK;
+    return bp_fail(err, BP_ERR_SCENE,
+                   "%s: found an interior, but no material of the mesh lets light in, expected one of type "
+                   "\"interface\" or \"dielectric\"; change the type, or remove \"interior\"",
+                   use->name);
+}
+
+/* Of the triangles from `first` on. */
+static BpStatus put_interiors(const BpMeshUse *use, size_t first, BpScene *scene, BpError *err) {
+    if (use->interior == 0) return BP_OK;
+    BP_TRY(bp_scene_make_triangle_interiors(scene, scene->triangle_count, err));
+    for (size_t i = first; i < scene->triangle_count; i++)
+        if (lets_light_in(scene, scene->triangles[i].material)) scene->triangle_interiors[i] = use->interior;
+    return BP_OK;
+}
+
 /* ---- triangles ---- */
 
 /* A triangle has one colour: its own, or the mean of its corners'. */
@@ -232,12 +258,15 @@ BpStatus bp_mesh_add_triangles(BpMesh *mesh, const BpMeshUse *use, BpScene *scen
     size_t colors_used = 0;
     BP_TRY(check_materials(mesh, use, err));
     BP_TRY(check_glass(mesh, use, scene, err));
+    BP_TRY(check_interior(mesh, use, scene, err));
     BP_TRY(make_room(mesh, use, colored, scene, err));
     for (size_t v = 0; v < mesh->vertex_count; v++) bp_place_point(&use->placement, mesh->positions[v]);
     const bool own = mesh->face_normals != NULL;
     BP_TRY(make_normals(mesh, use, scene, err));
     const bool mapped = is_mapped(mesh, use, scene);
     if (mapped) BP_TRY(bp_scene_make_coordinates(scene, scene->triangle_count + mesh->face_count, err));
+    const size_t first = scene->triangle_count;
     const size_t left_out = add_faces(mesh, use, colored, mapped, scene, &colors_used);
+    BP_TRY(put_interiors(use, first, scene, err));
     return add_note(mesh, use, own, mapped, left_out, colors_used, scene, err);
 }

@@ -15,6 +15,7 @@ typedef struct BpMeshUse {
     uint32_t
         material; /* of faces that none of `materials` is for, into the scene's; UINT32_MAX: there is none */
     bool smooth;  /* by the mesh's normals, or by those of its faces where it has none */
+    uint32_t interior;         /* of faces that light passes through, as that of a sphere; 0: none */
     const uint32_t *materials; /* Optional: for each of the mesh's own, one of the scene's, or UINT32_MAX */
 } BpMeshUse;
 
@@ -25,7 +26,8 @@ BpStatus bp_mesh_find_part_edge(const BpMesh *mesh, const BpMeshUse *use, uint32
 
 /* Adds the mesh's faces to the scene's triangles, which have its colours where their material has an albedo,
  * and a note. The mesh's positions are then those in the scene. Fails with BP_ERR_SCENE on glass that is not
- * closed, on faces without a material, and on too many triangles. */
+ * closed, on an interior where light passes through no face, on faces without a material, and on too many
+ * triangles. */
 BpStatus bp_mesh_add_triangles(BpMesh *mesh, const BpMeshUse *use, BpScene *scene, BpError *err);
 
 #endif

@@ -2,6 +2,7 @@
 #include "scene_capsules.h"
 
 #include "scene/material.h"
+#include "scene_medium.h"
 
 #include <stdlib.h>
 
@@ -11,7 +12,6 @@ static BpStatus refuse_others(const BpNode *node, BpError *err) {
         const char *name, *advice;
     } others[] = {{"center_end", "capsules stand still while the shutter is open; remove it"},
                   {"ends_end", "capsules stand still while the shutter is open; remove it"},
-                  {"interior", "capsules surround no media; use a sphere as the boundary"},
                   {"center", "a capsule has two ends; write \"ends\": [[0, 0, 0], [0, 1, 0]]"},
                   {"color", "a capsule has two halves; write \"colors\": [[0.8, 0.1, 0.1], [0.1, 0.1, 0.8]]"},
                   {"height", "a capsule is as long as its ends are apart; remove it"}};
@@ -68,7 +68,7 @@ static BpStatus parse_colors(const BpNode *node, BpScene *scene, BpCapsule *caps
 
 static BpStatus parse_capsule(const BpNode *node, const BpMaterialIndex *index, BpScene *scene,
                               BpCapsule *capsule, BpError *err) {
-    static const char *const names[] = {"ends", "radius", "material", "colors"};
+    static const char *const names[] = {"ends", "radius", "material", "colors", "interior"};
     static const char expected[] = "two points: \"ends\": [[0, 0, 0], [0, 1, 0]]";
     BP_TRY(refuse_others(node, err));
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
@@ -89,6 +89,19 @@ static BpStatus parse_capsule(const BpNode *node, const BpMaterialIndex *index, 
     return parse_colors(&colors, scene, capsule, err);
 }
 
+/* What fills the capsule, of `count`. */
+static BpStatus parse_interior(const BpNode *node, size_t index, size_t count, BpScene *scene, BpError *err) {
+    const BpNode interior = bp_node_member(node, "interior");
+    if (interior.value == NULL) return BP_OK;
+    if (scene->capsule_interiors == NULL) {
+        scene->capsule_interiors = calloc(count, sizeof *scene->capsule_interiors);
+        if (scene->capsule_interiors == NULL)
+            return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu interiors", count);
+        scene->capsule_interior_count = count;
+    }
+    return bp_parse_medium_name(&interior, scene, &scene->capsule_interiors[index], err);
+}
+
 BpStatus bp_parse_capsules(const BpNode *node, const BpMaterialIndex *index, BpScene *scene, BpError *err) {
     BP_TRY(bp_node_list(
         node,
@@ -106,6 +119,7 @@ BpStatus bp_parse_capsules(const BpNode *node, const BpMaterialIndex *index, BpS
             return bp_node_wrong(&element, "an object: { \"ends\": ..., \"radius\": ..., \"material\": ... }",
                                  err);
         BP_TRY(parse_capsule(&element, index, scene, &scene->capsules[i], err));
+        BP_TRY(parse_interior(&element, i, count, scene, err));
         scene->capsule_count = scene->listed_capsules = i + 1;
     }
     return BP_OK;

@@ -4,6 +4,7 @@
 #include "base/input_file.h"
 #include "mesh_triangles.h"
 #include "named_file.h"
+#include "scene_medium.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +14,6 @@
 /* What meshes of other programs have. */
 static BpStatus refuse_later(const BpNode *node, BpError *err) {
     static const char *const members[][2] = {
-        {"interior", "media inside meshes are not rendered yet; remove it, or use a sphere as the boundary"},
         {"motion", "meshes stand still while the shutter is open; remove it"},
         {"translate_end", "meshes stand still while the shutter is open; remove it"},
         {"center_end", "meshes stand still while the shutter is open; remove it"}};
@@ -141,7 +141,7 @@ static BpStatus read_mesh(const BpNode *node, const BpMaterialIndex *index, BpMe
 static BpStatus parse_mesh(const BpNode *node, const BpMaterialIndex *index, const BpSceneChanges *changes,
                            BpScene *scene, BpError *err) {
     static const char *const names[] = {"file",   "material",  "materials", "scale",
-                                        "rotate", "translate", "smooth"};
+                                        "rotate", "translate", "smooth",    "interior"};
     if (!json_is_object(node->value))
         return bp_node_wrong(node, "an object: { \"file\": \"bunny.ply\", \"material\": ... }", err);
     BP_TRY(refuse_later(node, err));
@@ -155,6 +155,8 @@ static BpStatus parse_mesh(const BpNode *node, const BpMaterialIndex *index, con
     BP_TRY(bp_node_string(&file, &use.name, err));
     BP_TRY(bp_node_boolean(&smooth, &use.smooth, err));
     BP_TRY(parse_placement(node, &use.placement, err));
+    const BpNode interior = bp_node_member(node, "interior");
+    BP_TRY(bp_parse_medium_name(&interior, scene, &use.interior, err));
     if (material.value != NULL) BP_TRY(bp_parse_material_name(&material, index, &use.material, err));
     if (materials.value != NULL && !json_is_object(materials.value))
         return bp_node_wrong(&materials,

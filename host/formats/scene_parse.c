@@ -171,5 +171,6 @@ BpStatus bp_parse_scene(const BpNode *root, const BpSceneChanges *changes, BpSce
         scene->background_up[scene->up] = 1; /* the world's */
     bp_shadow_catcher_place(scene);
     bp_lighting_place(scene);
-    return bp_refuse_faults(root, scene, err);
+    BP_TRY(bp_refuse_faults(root, scene, err));
+    return bp_bodies_find(scene, &scene->bodies, err);
 }

@@ -3,6 +3,7 @@
 
 #include "scene/placement.h"
 #include "scene/vertex_normals.h"
+#include "scene_medium.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -37,7 +38,7 @@ static void put(BpTriangle *triangle, const double *a, const double *b, const do
 
 static BpStatus parse_triangle(const BpNode *node, const BpMaterialIndex *index, BpTriangle *triangle,
                                BpError *err) {
-    static const char *const names[] = {"vertices", "normals", "uvs", "material"};
+    static const char *const names[] = {"vertices", "normals", "uvs", "material", "interior"};
     static const char vertices[] = "three points: \"vertices\": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(node, "vertices", vertices, err));
@@ -49,7 +50,7 @@ static BpStatus parse_triangle(const BpNode *node, const BpMaterialIndex *index,
 
 static BpStatus parse_quad(const BpNode *node, const BpMaterialIndex *index, BpTriangle *triangles,
                            BpError *err) {
-    static const char *const names[] = {"corner", "u", "v", "material"};
+    static const char *const names[] = {"corner", "u", "v", "material", "interior"};
     double at[4][3], u[3], v[3];
     uint32_t material;
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
@@ -74,7 +75,7 @@ static BpStatus parse_quad(const BpNode *node, const BpMaterialIndex *index, BpT
 
 static BpStatus parse_box(const BpNode *node, const BpMaterialIndex *index, BpTriangle *triangles,
                           BpError *err) {
-    static const char *const names[] = {"corners", "rotate", "translate", "material"};
+    static const char *const names[] = {"corners", "rotate", "translate", "material", "interior"};
     static const char expected[] = "two opposite points: \"corners\": [[0, 0, 0], [1, 1, 1]]";
     /* The corners of each side by their bits, x in the lowest, counter-clockwise seen from outside. */
     static const int sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
@@ -104,6 +105,18 @@ static BpStatus parse_box(const BpNode *node, const BpMaterialIndex *index, BpTr
     return BP_OK;
 }
 
+/* What fills the body that the last `each` triangles are a part of. */
+static BpStatus parse_interior(const BpNode *node, size_t each, BpScene *scene, BpError *err) {
+    const BpNode interior = bp_node_member(node, "interior");
+    uint32_t number = 0;
+    if (interior.value == NULL) return BP_OK;
+    BP_TRY(bp_parse_medium_name(&interior, scene, &number, err));
+    BP_TRY(bp_scene_make_triangle_interiors(scene, scene->triangle_count, err));
+    for (size_t i = scene->triangle_count - each; i < scene->triangle_count; i++)
+        scene->triangle_interiors[i] = number;
+    return BP_OK;
+}
+
 typedef BpStatus Parse(const BpNode *node, const BpMaterialIndex *index, BpTriangle *triangles, BpError *err);
 
 /* One of the three lists, of which each entry is `each` triangles. */
@@ -126,6 +139,7 @@ static BpStatus parse_list(const BpNode *node, const char *expected, const char 
         if (!json_is_object(element.value)) return bp_node_wrong(&element, entry, err);
         BP_TRY(parse(&element, index, &scene->triangles[scene->triangle_count], err));
         scene->triangle_count += each;
+        BP_TRY(parse_interior(&element, each, scene, err));
     }
     return BP_OK;
 }

@@ -366,6 +366,14 @@ static BpStatus put_materials(FILE *out, const BpScene *scene, BpError *err) {
     return BP_OK;
 }
 
+/* The member "interior" of a shape, where it has one. */
+static BpStatus put_interior(FILE *out, const BpScene *scene, size_t shape, BpError *err) {
+    const uint32_t interior = bp_shape_named_interior(scene, shape);
+    if (interior == 0) return BP_OK;
+    fputs(", \"interior\": ", out);
+    return put_text(out, scene->media[interior - 1].name, err);
+}
+
 static size_t written_spheres(const BpScene *scene) {
     return scene->has_particles ? scene->particle_first : scene->sphere_count;
 }
@@ -396,10 +404,7 @@ static BpStatus put_spheres(FILE *out, const BpScene *scene, BpError *err) {
             fputs(", \"center_end\": ", out);
             put_vector(out, bp_sphere_end(scene, i));
         }
-        if (i < scene->interior_count && scene->interiors[i] != 0) {
-            fputs(", \"interior\": ", out);
-            BP_TRY(put_text(out, scene->media[scene->interiors[i] - 1].name, err));
-        }
+        BP_TRY(put_interior(out, scene, i, err));
         fputs(" }", out);
     }
     fputs("\n  ]", out);
@@ -445,6 +450,7 @@ static BpStatus put_triangles(FILE *out, const BpScene *scene, BpError *err) {
         }
         fputs("], \"material\": ", out);
         BP_TRY(put_text(out, scene->materials[triangle->material].name, err));
+        BP_TRY(put_interior(out, scene, scene->sphere_count + i, err));
         fputs(" }", out);
     }
     fputs("\n  ]", out);
@@ -463,6 +469,7 @@ static BpStatus put_capsules(FILE *out, const BpScene *scene, BpError *err) {
         put_number(out, capsule->radius);
         fputs(", \"material\": ", out);
         BP_TRY(put_text(out, scene->materials[capsule->material].name, err));
+        BP_TRY(put_interior(out, scene, scene->sphere_count + scene->triangle_count + i, err));
         if (capsule->albedo[0] != BP_NO_ALBEDO) {
             fputs(", \"colors\": [", out);
             put_floats(out, scene->albedos[capsule->albedo[0]]);

@@ -130,26 +130,54 @@ static bool explain_motion(const BpScene *scene, size_t size, char *reason) {
     return moving > 0;
 }
 
+/* How many spheres, bodies of triangles and capsules have a medium inside. */
+static size_t filled_boundaries(const BpScene *scene) {
+    size_t filled = 0;
+    for (size_t i = 0; i < scene->interior_count; ++i) filled += bp_shape_interior(scene, i) != 0;
+    for (size_t b = 0; b < scene->bodies.count; ++b)
+        filled += bp_shape_interior(scene, scene->sphere_count + scene->bodies.list[b].first) != 0;
+    for (size_t i = 0; i < scene->capsule_interior_count; ++i)
+        filled += bp_shape_interior(scene, scene->sphere_count + scene->triangle_count + i) != 0;
+    return filled;
+}
+
 /* Whether a medium does anything to light, or a boundary lets it through. */
 static bool explain_media(const BpScene *scene, size_t size, char *reason) {
     const bool around = bp_scene_medium(scene) != 0;
-    size_t filled = 0, interfaces = 0;
-    for (size_t i = 0; i < scene->interior_count; ++i) filled += bp_sphere_interior(scene, i) != 0;
-    for (size_t m = 0, any = 0; m < scene->material_count && any == 0; ++m) {
-        any = scene->materials[m].kind == BP_MATERIAL_INTERFACE;
-        for (size_t i = 0; i < scene->sphere_count && any > 0; ++i)
-            interfaces += scene->materials[scene->spheres[i].material].kind == BP_MATERIAL_INTERFACE;
-    }
+    const size_t interfaces = bp_scene_interfaces(scene), filled = filled_boundaries(scene);
+    const bool spheres_alone = scene->triangle_count + scene->capsule_count == 0;
     if (filled > 0)
-        snprintf(reason, size, "%zu sphere%s with a medium inside%s", filled, bp_plural(filled),
-                 around ? ", and the scene lies in one" : "");
+        snprintf(reason, size, "%zu %s%s with a medium inside%s", filled, spheres_alone ? "sphere" : "shape",
+                 bp_plural(filled), around ? ", and the scene lies in one" : "");
     else if (around)
         snprintf(reason, size, "the scene lies in a medium");
     else if (interfaces > 0)
         snprintf(reason, size, "%zu interface%s, but all media are clear", interfaces, bp_plural(interfaces));
     else
-        snprintf(reason, size, "no sphere has a medium inside, and the scene has none around");
-    return around || filled > 0 || interfaces > 0;
+        snprintf(reason, size, "no %s has a medium inside, and the scene has none around",
+                 spheres_alone ? "sphere" : "shape");
+    return bp_scene_has_media(scene);
+}
+
+/* Whether triangles or capsules are boundaries of media: light passes through them, and something fills a
+ * part of space. */
+static bool explain_body_media(const BpScene *scene, bool media, size_t size, char *reason) {
+    size_t capsules = 0;
+    for (size_t i = 0; i < scene->capsule_count && media; ++i)
+        capsules += bp_material_is(scene->materials[scene->capsules[i].material].kind, BP_HAS_INSIDE);
+    const size_t bodies = scene->bodies.count;
+    if (bodies > 0 && capsules > 0)
+        snprintf(reason, size, "light passes into %zu bod%s of triangles and %zu capsule%s", bodies,
+                 bodies == 1 ? "y" : "ies", capsules, bp_plural(capsules));
+    else if (bodies > 0)
+        snprintf(reason, size, "light passes into %zu bod%s of triangles", bodies, bodies == 1 ? "y" : "ies");
+    else if (capsules > 0)
+        snprintf(reason, size, "light passes into %zu capsule%s", capsules, bp_plural(capsules));
+    else if (media)
+        snprintf(reason, size, "light passes into spheres alone");
+    else
+        snprintf(reason, size, "there are no media");
+    return bodies + capsules > 0;
 }
 
 static void explain_no_lamp(const BpScene *scene, size_t size, char *reason) {
@@ -215,8 +243,10 @@ static bool sky_outshines_lamps(const BpScene *scene) {
 static bool scatters_in_media(const BpScene *scene) {
     const uint32_t around = bp_scene_medium(scene);
     if (around != 0 && bp_medium_scatters(&scene->media[around - 1])) return true;
-    for (size_t i = 0; i < scene->interior_count; ++i) {
-        const uint32_t inside = bp_sphere_interior(scene, i);
+    const size_t interiors =
+        scene->interior_count + scene->triangle_interior_count + scene->capsule_interior_count;
+    for (size_t i = 0; i < bp_scene_shapes(scene) && interiors > 0; ++i) {
+        const uint32_t inside = bp_shape_interior(scene, i);
         if (inside != 0 && bp_medium_scatters(&scene->media[inside - 1])) return true;
     }
     return false;
@@ -426,6 +456,9 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     if (explain_environment(scene, size, effects->reason[BP_EFFECT_ENVIRONMENT]))
         effects->bits |= 1u << BP_EFFECT_ENVIRONMENT;
     if (explain_media(scene, size, effects->reason[BP_EFFECT_MEDIA])) effects->bits |= 1u << BP_EFFECT_MEDIA;
+    if (explain_body_media(scene, bp_effects_has(effects->bits, BP_EFFECT_MEDIA), size,
+                           effects->reason[BP_EFFECT_BODY_MEDIA]))
+        effects->bits |= 1u << BP_EFFECT_BODY_MEDIA;
     snprintf(effects->reason[BP_EFFECT_SHADOW_CATCHER], size,
              scene->shadow_catcher.present ? "the scene has a shadow catcher" : "no shadow catcher");
     if (scene->shadow_catcher.present) effects->bits |= 1u << BP_EFFECT_SHADOW_CATCHER;

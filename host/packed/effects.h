@@ -36,6 +36,7 @@
     X(ENVIRONMENT, "environment", "an image that surrounds the scene as background", "", "")                 \
     X(MOTION, "motion", "spheres that move while the shutter is open", "", "")                               \
     X(MEDIA, "media", "fog, smoke and tinted glass, in spheres or in the whole scene", "", "")               \
+    X(BODY_MEDIA, "body_media", "media in boxes, meshes and capsules", "", "")                               \
     X(SHADOW_CATCHER, "shadow_catcher", "a plane that shows nothing but the shadow on it", "", "")           \
     X(CAUSTICS, "caustics", "rays to lamps through balls of glass and off mirrors", "", "")                  \
     X(TRIANGLES, "triangles", "triangles beside spheres, or in place of them", "", "")                       \

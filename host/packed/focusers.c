@@ -106,15 +106,6 @@ uint32_t bp_focuser_vertices(const BpScene *scene, size_t sphere) {
                                                                           : 2;
 }
 
-static bool has_media(const BpScene *scene) {
-    if (bp_scene_medium(scene) != 0) return true;
-    for (size_t i = 0; i < scene->interior_count; ++i)
-        if (bp_sphere_interior(scene, i) != 0) return true;
-    for (size_t i = 0; i < scene->sphere_count; ++i)
-        if (scene->materials[scene->spheres[i].material].kind == BP_MATERIAL_INTERFACE) return true;
-    return false;
-}
-
 static bool has_motion(const BpScene *scene) {
     for (size_t i = 0; i < scene->moving_count; ++i)
         if (bp_sphere_moves(scene, i)) return true;
@@ -132,7 +123,7 @@ bool bp_focusers_explain(const BpScene *scene, size_t size, char *reason) {
     } else if (found.lamp_count > BP_FOCUSER_LAMPS_MAX) {
         snprintf(reason, size, "%zu lamps; through glass and off mirrors, up to %d are tried",
                  found.lamp_count, BP_FOCUSER_LAMPS_MAX);
-    } else if (has_media(scene)) {
+    } else if (bp_scene_has_media(scene)) {
         snprintf(reason, size, "left to chance where there are media");
     } else if (has_motion(scene)) {
         snprintf(reason, size, "left to chance where spheres move");

@@ -5,6 +5,7 @@
 #include "base/pages.h"
 #include "base/status.h"
 #include "base/thread_pool.h"
+#include "boundaries.h"
 #include "environment_table.h"
 #include "focusers.h"
 #include "reals.h"
@@ -429,15 +430,16 @@ static bool is_second(const BpScene *scene, size_t shape) {
  * of negative radius uses: with the reciprocal index, since seen from inside out is the same as inside and
  * outside exchanged; normals face the ray, so no other kind can tell a negative radius. And one whose albedo
  * varies, for shapes that have a colour of their own. `second[m]`: the number of that entry of material m.
- */
+ * Behind these stands an entry for each body, by which its triangles are told from others. */
 static BpStatus pack_materials(const BpScene *scene, uint32_t *second, BpPacked *packed, BpError *err) {
     const size_t count = scene->material_count;
     if (count > UINT32_MAX / 4)
         return bp_fail(err, BP_ERR_LIMIT, "%zu materials; at most %u can be packed", count, UINT32_MAX / 4);
     BpStatus status = BP_OK;
-    PackedMaterialKind *kinds = calloc(2 * count + 1, sizeof *kinds);
-    PackedMaterial *numbers = calloc(2 * count + 1, sizeof *numbers);
-    PackedVariation *variations = calloc(2 * count + 1, sizeof *variations);
+    const size_t room = 2 * count + scene->bodies.count + 1;
+    PackedMaterialKind *kinds = calloc(room, sizeof *kinds);
+    PackedMaterial *numbers = calloc(room, sizeof *numbers);
+    PackedVariation *variations = calloc(room, sizeof *variations);
     packed->variations = (uint32_t *)variations;
     if (kinds == NULL || numbers == NULL || variations == NULL) {
         status = out_of_memory(scene, err);
@@ -460,6 +462,13 @@ static BpStatus pack_materials(const BpScene *scene, uint32_t *second, BpPacked 
         variations[used] = variations[m];
         variations[used].albedo = 0;
         second[m] = used++;
+    }
+    packed->first_body = used;
+    for (size_t b = 0; b < scene->bodies.count; ++b, ++used) {
+        const uint32_t m = scene->bodies.list[b].material;
+        numbers[used] = numbers[m];
+        kinds[used] = kinds[m];
+        variations[used] = variations[m];
     }
     packed->material_count = used > 0 ? used : 1; /* at least one, unused */
     packed->materials =
@@ -506,6 +515,17 @@ static void pack_other_colour(BpPacked *packed, size_t slot, const float *own, c
                        own != NULL ? (double)own[a] : albedo[a]);
 }
 
+/* Of the shape's material, the packed entry that is for it. */
+static uint32_t entry_for(const Slots *slots, size_t shape, uint32_t material) {
+    const BpScene *scene = slots->scene;
+    const size_t triangle = shape - scene->sphere_count; /* huge for spheres */
+    if (scene->bodies.count > 0 && triangle < scene->triangle_count &&
+        bp_body_of(scene, triangle) != BP_NO_BODY)
+        return slots->packed->first_body + bp_body_of(scene, triangle);
+    const bool second = slots->second[material] != 0 && is_second(scene, shape);
+    return second ? slots->second[material] : material;
+}
+
 #define SLOT_CHUNK 64u
 
 /* Shapes are asked in the order of the tree, so this mostly waits for memory. First all shapes of the chunk
@@ -524,8 +544,7 @@ static void pack_slot_chunk(const Slots *slots, size_t first, size_t count) {
     for (size_t s = 0; s < count; ++s) {
         const bool used = shapes[s] != NO_SPHERE;
         const Scattered *scattered = used ? &slots->scattered[materials[s]] : &nothing;
-        const bool second = used && slots->second[materials[s]] != 0 && is_second(scene, shapes[s]);
-        packed->slot_material[first + s] = second ? slots->second[materials[s]] : materials[s];
+        packed->slot_material[first + s] = used ? entry_for(slots, shapes[s], materials[s]) : materials[s];
         if (first + s >= packed->coloured_slots) continue;
         const float *own =
             scattered->replaced && albedos[s] != BP_NO_ALBEDO ? scene->albedos[albedos[s]] : NULL;
@@ -584,6 +603,8 @@ static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, unsigne
             pack_material_colour(&slots, m, &scattered[m]);
             if (second[m] != 0) pack_material_colour(&slots, second[m], &scattered[m]);
         }
+        for (uint32_t b = 0; b < scene->bodies.count && shared; ++b)
+            pack_material_colour(&slots, packed->first_body + b, &scattered[scene->bodies.list[b].material]);
     } else {
         status = out_of_memory(scene, err);
     }
@@ -610,57 +631,6 @@ static BpStatus pack_media(const BpScene *scene, BpPacked *packed, BpError *err)
     return packed->media != NULL ? BP_OK : out_of_memory(scene, err);
 }
 
-typedef struct Boundary {
-    double radius;
-    uint32_t sphere, slot;
-} Boundary;
-
-static int compare_boundaries(const void *a_pointer, const void *b_pointer) {
-    const Boundary *a = a_pointer, *b = b_pointer;
-    if (a->radius != b->radius) return a->radius < b->radius ? -1 : 1;
-    return a->sphere < b->sphere ? -1 : a->sphere > b->sphere;
-}
-
-/* The spheres that light passes through, the smallest first; none where there is neither a medium nor an
- * interface. Rays to lamps pass an interface that has no medium, too. */
-static BpStatus pack_boundaries(const BpScene *scene, BpPacked *packed, BpError *err) {
-    const BpTree *tree = &packed->tree;
-    const size_t slots = (size_t)tree->leaf_count * tree->width;
-    size_t count = 0, filled = bp_scene_medium(scene) != 0;
-    for (size_t i = 0; i < scene->interior_count; ++i) filled += bp_sphere_interior(scene, i) != 0;
-    bool interfaces = false;
-    for (size_t m = 0; m < scene->material_count; ++m)
-        interfaces = interfaces || scene->materials[m].kind == BP_MATERIAL_INTERFACE;
-    for (size_t i = 0; i < scene->sphere_count && interfaces; ++i)
-        filled += scene->materials[scene->spheres[i].material].kind == BP_MATERIAL_INTERFACE;
-    for (size_t i = 0; i < scene->sphere_count && filled > 0; ++i)
-        count += bp_material_is(scene->materials[scene->spheres[i].material].kind, BP_HAS_INSIDE);
-    Boundary *boundaries = malloc((count + 1) * sizeof *boundaries);
-    packed->boundaries = malloc((count + 1) * BOUNDARY_UINTS * sizeof *packed->boundaries);
-    packed->boundary_count = (uint32_t)count + 1;
-    if (boundaries == NULL || packed->boundaries == NULL) {
-        free(boundaries);
-        return out_of_memory(scene, err);
-    }
-    size_t found = 0;
-    for (size_t slot = 0; slot < slots && count > 0; ++slot) {
-        const uint32_t i = tree->slot_sphere[slot];
-        if (i >= scene->sphere_count || /* NO_SPHERE too */
-            !bp_material_is(scene->materials[scene->spheres[i].material].kind, BP_HAS_INSIDE))
-            continue;
-        boundaries[found++] = (Boundary){fabs(scene->spheres[i].radius), i, (uint32_t)slot};
-    }
-    qsort(boundaries, found, sizeof *boundaries, compare_boundaries);
-    for (size_t i = 0; i < found; ++i) {
-        packed->boundaries[BOUNDARY_UINTS * i] = boundaries[i].slot;
-        packed->boundaries[BOUNDARY_UINTS * i + 1] = bp_sphere_interior(scene, boundaries[i].sphere);
-    }
-    packed->boundaries[BOUNDARY_UINTS * found] = NO_SLOT;
-    packed->boundaries[BOUNDARY_UINTS * found + 1] = bp_scene_medium(scene);
-    free(boundaries);
-    return BP_OK;
-}
-
 /* ---- the whole ------------------------------------------------------------------------------------- */
 
 BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool sample_lamps,
@@ -682,7 +652,12 @@ BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool 
     BP_TRY_GOTO(status, pack_textures(scene, origin, packed, err), cleanup);
     BP_TRY_GOTO(status, pack_slots(scene, second, options->threads, packed, err), cleanup);
     BP_TRY_GOTO(status, pack_media(scene, packed, err), cleanup);
-    BP_TRY_GOTO(status, pack_boundaries(scene, packed, err), cleanup);
+    BpBodyTable table = {
+        options->bodies, {origin[0], origin[1], origin[2]}, packed->material_count, packed->first_body};
+    BP_TRY_GOTO(
+        status,
+        bp_pack_boundaries(scene, &packed->tree, &table, &packed->boundaries, &packed->boundary_uints, err),
+        cleanup);
     if (sample_lamps)
         BP_TRY_GOTO(status, bp_lamp_tree_build(scene, &packed->tree, &packed->lamps, err), cleanup);
     BP_TRY_GOTO(status, pack_discs(scene, packed->lamps.unit, packed, err), cleanup);

@@ -31,13 +31,15 @@ typedef struct BpPacked {
     SCENE_ARRAYS_OF_SLOTS(BP_HOLD)
 #undef BP_HOLD
     uint32_t material_count; /* at least one */
+    uint32_t first_body;     /* of materials, that of the first body; there is one for each */
     uint32_t coloured_slots; /* the first so many slots have a colour each, in slot_albedo */
     uint64_t colour_count;   /* these, and one for each material where there are other slots */
     uint32_t texture_count;
     uint64_t texel_count; /* of all images */
     uint32_t sky_row_count, sky_column_count, sky_height_count;
     uint32_t disc_count;
-    uint32_t medium_count, boundary_count; /* at least one */
+    uint32_t medium_count;   /* at least one */
+    uint32_t boundary_uints; /* of the array */
 } BpPacked;
 
 /* `sample_lamps`: the kernel is built to. `sample_caustics`: rays are sent to lamps through focusers, if the

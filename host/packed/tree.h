@@ -19,6 +19,7 @@ typedef struct BpTreeOptions {
     unsigned threads;      /* 0: all cores */
     bool motions;          /* the kernel reads motions, even if no sphere moves */
     bool axes;             /* the kernel reads axes, even if there are no capsules */
+    bool bodies;           /* the kernel reads the table of bodies, even if there are none */
 } BpTreeOptions;
 
 typedef struct BpTree {

@@ -1,6 +1,8 @@
 /* medium.c: flights through media; see trace.h. */
 #include "trace.h"
 
+#define PI 3.14159265358979323846
+
 /* Beyond this many mean free paths nothing is left in double. */
 #define FAR 800.0
 
@@ -8,27 +10,77 @@
 static bool begins_inside(const BpScene *scene, const Ray *ray, const BpSphere *sphere) {
     const Vec from_center = sub(ray->origin, bp_ref_center(scene, ray, sphere));
     const double radius = fabs(sphere->radius), distance = sqrt(length2(from_center));
+    const bool from_camera =
+        ray->leaves == NULL && ray->quits == NULL && ray->parts == NULL && !ray->scattered;
     if (ray->leaves == sphere) return dot(ray->direction, from_center) < 0;
-    if (ray->leaves == NULL && !ray->scattered &&
-        fabs(distance - radius) <= 1e-15 * (radius + sqrt(length2(ray->origin))))
+    if (from_camera && fabs(distance - radius) <= 1e-15 * (radius + sqrt(length2(ray->origin))))
         return dot(ray->direction, from_center) < 0; /* a camera on the surface */
     return distance < radius;
 }
 
-/* Of the smallest sphere around that light passes through, of equal ones the first; NULL: clear. */
+static bool begins_in_capsule(const Ray *ray, const BpCapsule *capsule) {
+    const Vec away = bp_ref_from_axis(capsule, ray->origin);
+    if (ray->parts == capsule) return dot(ray->direction, away) < 0;
+    return length2(away) < capsule->radius * capsule->radius;
+}
+
+/* The solid angle that a triangle fills, positive where its inner side is seen (A. van Oosterom and J.
+ * Strackee, "The Solid Angle of a Plane Triangle", 1983). Of the triangle that the ray leaves that is a half
+ * of all directions, seen from the side to which it goes; others in its plane are seen from their edges. */
+static double solid_angle(const Ray *ray, const BpTriangle *triangle) {
+    Vec at[3];
+    for (int k = 0; k < 3; ++k) at[k] = sub(vec(triangle->vertices[k]), ray->origin);
+    const Vec outward = cross(sub(at[1], at[0]), sub(at[2], at[0]));
+    if (ray->quits == triangle) return dot(ray->direction, outward) < 0 ? 2 * PI : -2 * PI;
+    for (int k = 0; k < 3; ++k) at[k] = unit(at[k]);
+    const double volume = dot(at[0], cross(at[1], at[2]));
+    return 2 * atan2(volume, 1 + dot(at[0], at[1]) + dot(at[1], at[2]) + dot(at[2], at[0]));
+}
+
+/* How often a body's triangles wind around where the ray begins, by all directions in which they are seen. */
+static double winding(const BpScene *scene, const Ray *ray, uint32_t body) {
+    double sum = 0;
+    for (size_t i = scene->bodies.list[body].first; i < scene->triangle_count; ++i)
+        if (bp_body_of(scene, i) == body) sum += solid_angle(ray, &scene->triangles[i]);
+    return sum / (4 * PI);
+}
+
+static bool lets_light_in(const BpScene *scene, uint32_t material) {
+    const BpMaterialKind kind = scene->materials[material].kind;
+    return kind == BP_MATERIAL_DIELECTRIC || kind == BP_MATERIAL_ROUGH_DIELECTRIC ||
+           kind == BP_MATERIAL_INTERFACE;
+}
+
+/* Of the boundary around it that has the least volume, of equal ones the first: spheres, then bodies of
+ * triangles, then capsules. NULL: clear. */
 static const BpMedium *medium_around(const BpScene *scene, const Ray *ray) {
     double smallest = INFINITY;
     uint32_t number = scene->medium;
     if (scene->medium_count == 0) return NULL;
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         const BpSphere *sphere = &scene->spheres[i];
-        const BpMaterialKind kind = scene->materials[sphere->material].kind;
-        if (kind != BP_MATERIAL_DIELECTRIC && kind != BP_MATERIAL_ROUGH_DIELECTRIC &&
-            kind != BP_MATERIAL_INTERFACE)
+        const double radius = fabs(sphere->radius), volume = 4 * PI / 3 * radius * radius * radius;
+        if (!lets_light_in(scene, sphere->material) || volume >= smallest ||
+            !begins_inside(scene, ray, sphere))
             continue;
-        if (fabs(sphere->radius) >= smallest || !begins_inside(scene, ray, sphere)) continue;
-        smallest = fabs(sphere->radius);
+        smallest = volume;
         number = i < scene->interior_count ? scene->interiors[i] : 0;
+    }
+    for (uint32_t b = 0; b < scene->bodies.count; ++b) {
+        const BpBody *body = &scene->bodies.list[b];
+        if (body->volume >= smallest || fabs(winding(scene, ray, b)) < 0.5) continue;
+        smallest = body->volume;
+        number = body->interior;
+    }
+    for (size_t i = 0; i < scene->capsule_count; ++i) {
+        const BpCapsule *capsule = &scene->capsules[i];
+        const double length = sqrt(length2(sub(vec(capsule->ends[1]), vec(capsule->ends[0]))));
+        const double volume = PI * capsule->radius * capsule->radius * (length + 4 * capsule->radius / 3);
+        if (!lets_light_in(scene, capsule->material) || volume >= smallest ||
+            !begins_in_capsule(ray, capsule))
+            continue;
+        smallest = volume;
+        number = i < scene->capsule_interior_count ? scene->capsule_interiors[i] : 0;
     }
     return number == 0 ? NULL : &scene->media[number - 1];
 }

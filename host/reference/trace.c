@@ -92,15 +92,6 @@ static bool is_beyond(const BpCapsule *capsule, Vec point) {
     return 2 * dot(sub(point, first), axis) > length2(axis);
 }
 
-/* From the point of the axis that is closest. */
-static Vec from_axis(const BpCapsule *capsule, Vec point) {
-    const Vec first = vec(capsule->ends[0]), axis = sub(vec(capsule->ends[1]), first),
-              way = sub(point, first);
-    const double square = length2(axis);
-    const double place = square > 0 ? fmin(1, fmax(0, dot(way, axis) / square)) : 0;
-    return sub(way, scale(place, axis));
-}
-
 /* Where the ray's line is within a ball, from *from to *to; both stay where it is nowhere. Widens what is
  * there. */
 static void widen_by_ball(const Ray *ray, Vec center, double radius, double *from, double *to) {
@@ -152,7 +143,7 @@ static bool hit_capsule(const BpCapsule *capsule, const Ray *ray, double t_max, 
     if (from > to) return false;
     double root = from > 0 ? from : to;
     if (ray->parts == capsule) {
-        if (dot(ray->direction, from_axis(capsule, ray->origin)) >= 0) return false;
+        if (dot(ray->direction, bp_ref_from_axis(capsule, ray->origin)) >= 0) return false;
         root = to;
     }
     if (!(root > 0 && root < t_max)) return false;
@@ -162,7 +153,7 @@ static bool hit_capsule(const BpCapsule *capsule, const Ray *ray, double t_max, 
 
 static void set_capsule_hit(const BpScene *scene, const Ray *ray, const BpCapsule *capsule, double t,
                             Hit *hit) {
-    const Vec point = add(ray->origin, scale(t, ray->direction)), away = from_axis(capsule, point);
+    const Vec point = add(ray->origin, scale(t, ray->direction)), away = bp_ref_from_axis(capsule, point);
     const Vec outward = unit(away);
     hit->t = t;
     hit->sphere = NULL;

@@ -102,6 +102,15 @@ Vec bp_ref_camera_color(const BpScene *scene, const Ray *ray, double height, uin
 bool bp_ref_fly(const BpScene *scene, const Ray *ray, double distance, Random *random, Path *path,
                 Ray *scattered, Vec *weight);
 
+/* To a point, from the point of a capsule's axis that is closest. */
+static inline Vec bp_ref_from_axis(const BpCapsule *capsule, Vec point) {
+    const Vec first = vec(capsule->ends[0]), axis = sub(vec(capsule->ends[1]), first),
+              way = sub(point, first);
+    const double square = length2(axis);
+    const double place = square > 0 ? fmin(1, fmax(0, dot(way, axis) / square)) : 0;
+    return sub(way, scale(place, axis));
+}
+
 /* The centre of the sphere at the ray's time. */
 static inline Vec bp_ref_center(const BpScene *scene, const Ray *ray, const BpSphere *sphere) {
     const size_t i = (size_t)(sphere - scene->spheres);

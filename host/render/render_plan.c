@@ -138,6 +138,7 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
         .threads = options->threads,
         .motions = bp_effects_has(setup->program.effects, BP_EFFECT_MOTION),
         .axes = bp_effects_has(setup->program.effects, BP_EFFECT_CAPSULES),
+        .bodies = bp_effects_has(setup->program.effects, BP_EFFECT_BODY_MEDIA),
     };
     BP_TRY(bp_scene_pack(scene, &tree_options, bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS),
                          caustics == BP_CAUSTICS_ON, packed, err));

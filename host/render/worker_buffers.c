@@ -70,7 +70,7 @@ static void list_uploads(const BpWorker *worker, const BpPacked *packed, Upload 
     const uint64_t disc_count = packed->disc_count, texture_count = packed->texture_count;
     const uint64_t texel_count = packed->texel_count, sky_row_count = packed->sky_row_count;
     const uint64_t sky_column_count = packed->sky_column_count, sky_height_count = packed->sky_height_count;
-    const uint64_t medium_count = packed->medium_count, boundary_count = packed->boundary_count;
+    const uint64_t medium_count = packed->medium_count, boundary_uints = packed->boundary_uints;
     const uint64_t focuser_count = packed->focusers.focuser_count,
                    target_count = packed->focusers.target_count;
     const uint64_t material_count = packed->material_count > 0 ? packed->material_count : 1;

@@ -29,12 +29,6 @@ bool bp_capsule_place_fault(const BpCapsule *capsule, BpFault *fault) {
 
 bool bp_capsule_material_fault(const BpScene *scene, uint32_t number, BpFault *fault) {
     const BpMaterial *material = &scene->materials[number];
-    if (material->kind == BP_MATERIAL_INTERFACE)
-        return bp_fault_set(
-            fault, BP_FAULT_CAPSULE, "material",
-            "found the type \"interface\", expected another: capsules surround no media; use a "
-            "sphere as their boundary");
-    if (bp_glass_beside_media(scene, material, BP_FAULT_CAPSULE, "capsules", fault)) return true;
     if (bp_material_emits(material))
         return bp_fault_set(
             fault, BP_FAULT_CAPSULE, "material",
@@ -113,7 +107,9 @@ BpStatus bp_scene_find_capsule_fault(const BpScene *scene, BpFault *fault, BpErr
             return BP_OK;
         }
         if (bp_capsule_place_fault(capsule, fault) ||
-            bp_capsule_material_fault(scene, capsule->material, fault))
+            bp_capsule_material_fault(scene, capsule->material, fault) ||
+            bp_interior_fault(scene, scene->sphere_count + scene->triangle_count + i, BP_FAULT_CAPSULE,
+                              "capsule", fault))
             return BP_OK;
         glass += bp_material_is(scene->materials[capsule->material].kind, BP_HAS_INSIDE);
         if (pinhole && holds_point(capsule, camera->lookfrom)) {

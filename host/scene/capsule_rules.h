@@ -8,7 +8,7 @@
 #include "scene_fault.h"
 
 /* Ends are finite and near enough, radii above 0, and materials are ones that capsules may have: they neither
- * emit nor surround a medium. No two of glass are the same, and no pinhole camera stands on one.
+ * emit. No two of glass are the same, and no pinhole camera stands on one.
  * BP_ERR_MEMORY. */
 BpStatus bp_scene_find_capsule_fault(const BpScene *scene, BpFault *fault, BpError *err);
 

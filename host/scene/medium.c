@@ -19,8 +19,43 @@ static uint32_t unless_clear(const BpScene *scene, uint32_t number) {
     return number == 0 || bp_medium_is_clear(&scene->media[number - 1]) ? 0 : number;
 }
 
-uint32_t bp_sphere_interior(const BpScene *scene, size_t sphere) {
-    return sphere < scene->interior_count ? unless_clear(scene, scene->interiors[sphere]) : 0;
+uint32_t bp_shape_named_interior(const BpScene *scene, size_t shape) {
+    const uint32_t *interiors = scene->interiors;
+    size_t count = scene->interior_count, place = shape;
+    if (shape >= scene->sphere_count + scene->triangle_count) {
+        place = shape - scene->sphere_count - scene->triangle_count;
+        interiors = scene->capsule_interiors;
+        count = scene->capsule_interior_count;
+    } else if (shape >= scene->sphere_count) {
+        place = shape - scene->sphere_count;
+        interiors = scene->triangle_interiors;
+        count = scene->triangle_interior_count;
+    }
+    return place < count ? interiors[place] : 0;
+}
+
+uint32_t bp_shape_interior(const BpScene *scene, size_t shape) {
+    return unless_clear(scene, bp_shape_named_interior(scene, shape));
+}
+
+size_t bp_scene_filled(const BpScene *scene) {
+    size_t filled = 0;
+    if (scene->interior_count + scene->triangle_interior_count + scene->capsule_interior_count == 0) return 0;
+    for (size_t i = 0; i < bp_scene_shapes(scene); i++) filled += bp_shape_interior(scene, i) != 0;
+    return filled;
+}
+
+size_t bp_scene_interfaces(const BpScene *scene) {
+    size_t interfaces = 0, materials = 0;
+    for (size_t m = 0; m < scene->material_count; m++)
+        materials += scene->materials[m].kind == BP_MATERIAL_INTERFACE;
+    for (size_t i = 0; i < bp_scene_shapes(scene) && materials > 0; i++)
+        interfaces += scene->materials[bp_shape_material(scene, i)].kind == BP_MATERIAL_INTERFACE;
+    return interfaces;
+}
+
+bool bp_scene_has_media(const BpScene *scene) {
+    return bp_scene_medium(scene) != 0 || bp_scene_filled(scene) > 0 || bp_scene_interfaces(scene) > 0;
 }
 
 uint32_t bp_scene_medium(const BpScene *scene) {

@@ -1,4 +1,4 @@
-/* medium.h: what fills a sphere that light passes through, or all of space: fog, smoke, tinted glass.
+/* medium.h: what fills a shape that light passes through, or all of space: fog, smoke, tinted glass.
  *
  * In:    a scene.   Out: which of its media do anything, and where.
  * Knows: the grammar's terms.   Does not know: how a kernel or the reference traces through it.
@@ -7,9 +7,10 @@
  * where light is scattered, its direction changes by the phase function of Henyey and Greenstein (1941),
  * whose mean cosine is `anisotropy`: 0 scatters evenly, above 0 forwards, below 0 backwards.
  *
- * The rule for media that nest or overlap: a point lies in one medium, that of the smallest sphere around it
- * that light passes through (a dielectric or an interface), of equal ones the first. Without an interior that
- * sphere is clear inside. A point outside all such spheres lies in the scene's medium. */
+ * The rule for media that nest or overlap: a point lies in one medium, that of the boundary around it with
+ * the least volume. Boundaries are what light passes through (a dielectric or an interface): spheres, bodies
+ * of triangles (bodies.h) and capsules; of equal ones the first counts, in this order. Without an interior a
+ * boundary is clear inside. A point outside all of them lies in the scene's medium. */
 #ifndef BP_SCENE_MEDIUM_H
 #define BP_SCENE_MEDIUM_H
 
@@ -36,9 +37,16 @@ bool bp_medium_scatters(const BpMedium *medium);
 /* Colours scatter differently. */
 bool bp_medium_is_coloured(const BpMedium *medium);
 
-/* The number, counted from 1, of the medium inside a sphere that has one that is not clear, else 0. */
-uint32_t bp_sphere_interior(const struct BpScene *scene, size_t sphere);
-/* The same of the medium around all spheres. */
+/* The number, counted from 1, of the medium inside a shape, clear or not; 0: it names none. */
+uint32_t bp_shape_named_interior(const struct BpScene *scene, size_t shape);
+/* The same, and 0 where that medium is clear. */
+uint32_t bp_shape_interior(const struct BpScene *scene, size_t shape);
+/* The same of the medium around all shapes. */
 uint32_t bp_scene_medium(const struct BpScene *scene);
+/* How many shapes have a medium inside that is not clear, and how many are interfaces. */
+size_t bp_scene_filled(const struct BpScene *scene);
+size_t bp_scene_interfaces(const struct BpScene *scene);
+/* Whether rays have to know which medium they are in: there is one that is not clear, or an interface. */
+bool bp_scene_has_media(const struct BpScene *scene);
 
 #endif

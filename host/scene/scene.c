@@ -175,6 +175,9 @@ void bp_scene_destroy(BpScene **scene) {
     free(s->capsules);
     free(s->center_ends);
     free(s->interiors);
+    free(s->triangle_interiors);
+    free(s->capsule_interiors);
+    bp_bodies_clear(&s->bodies);
     for (size_t i = 0; i < s->medium_count; i++) free(s->media[i].name);
     free(s->media);
     free(s->albedos);
@@ -293,6 +296,18 @@ size_t bp_scene_mapped_triangles(const BpScene *scene) {
         count += bp_triangle_coordinates(scene, i) != NULL &&
                  bp_material_is_mapped(scene, &scene->materials[scene->triangles[i].material]);
     return count;
+}
+
+BpStatus bp_scene_make_triangle_interiors(BpScene *scene, size_t count, BpError *err) {
+    const size_t before = scene->triangle_interior_count;
+    if (count <= before) return BP_OK;
+    uint32_t *const interiors = realloc(scene->triangle_interiors, count * sizeof *interiors);
+    if (interiors == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the interiors of %zu triangles", count);
+    memset(interiors + before, 0, (count - before) * sizeof *interiors);
+    scene->triangle_interiors = interiors;
+    scene->triangle_interior_count = count;
+    return BP_OK;
 }
 
 const char *bp_capsule_name(const BpScene *scene, size_t capsule, char text[BP_SPHERE_NAME_SIZE]) {

@@ -10,12 +10,14 @@
  * degrees; centers when the shutter closes like those when it opens; 0 < vfov < 180, and the size of the
  * plane in focus fits a float; lookfrom != lookat; vup not parallel to the view; 1 <= width, height <=
  * BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole camera on the surface of at most one sphere;
- * of triangles what triangle_rules.h lists, and of capsules what capsule_rules.h does.
+ * of triangles what triangle_rules.h lists, of capsules what capsule_rules.h does, and of bodies what
+ * body_rules.h does.
  */
 #ifndef BP_SCENE_SCENE_H
 #define BP_SCENE_SCENE_H
 
 #include "ballpark.h"
+#include "bodies.h"
 #include "image/texels.h"
 #include "material.h"
 #include "medium.h"
@@ -212,6 +214,9 @@ struct BpScene {
     size_t moving_count;      /* 0: no sphere moves */
     uint32_t *interiors; /* of the first interior_count spheres: what fills them, counted as `medium` is */
     size_t interior_count;
+    uint32_t *triangle_interiors, *capsule_interiors; /* the same of the first triangles and capsules */
+    size_t triangle_interior_count, capsule_interior_count;
+    BpBodies bodies;       /* of the triangles that are boundaries of media */
     BpTriangle *triangles; /* those that are listed, then those of quads, of boxes and of meshes */
     size_t triangle_count, quad_count, box_count;
     float (*normals)[3][3]; /* of the first normal_count triangles: at the vertices, of unit length, on either
@@ -325,6 +330,8 @@ static inline const float (*bp_triangle_normals(const BpScene *scene, size_t tri
 }
 /* Makes room for the normals of `count` triangles in all; those that are new are 0. BP_ERR_MEMORY. */
 BpStatus bp_scene_make_normals(BpScene *scene, size_t count, BpError *err);
+/* The same of the interiors of triangles. */
+BpStatus bp_scene_make_triangle_interiors(BpScene *scene, size_t count, BpError *err);
 
 /* The texture coordinates at a triangle's vertices, six numbers; NULL: it has none. */
 static inline const float *bp_triangle_coordinates(const BpScene *scene, size_t triangle) {

@@ -1,9 +1,11 @@
 /* scene_validate.c: see scene_fault.h, and bp_scene_validate in scene.h. */
 #include "base/message_text.h"
+#include "body_rules.h"
 #include "capsule_rules.h"
 #include "material.h"
 #include "scene_fault.h"
 #include "scene_side.h"
+#include "shape_rules.h"
 #include "triangle_rules.h"
 
 #include <float.h>
@@ -168,21 +170,6 @@ static bool medium_fault(const BpMedium *medium, BpFault *fault) {
                    BP_ANISOTROPY_MAX, "a mean cosine from -0.999 to 0.999; 0 scatters evenly");
 }
 
-/* The material of the sphere is in range. */
-static bool interior_fault(const BpScene *scene, size_t i, BpFault *fault) {
-    if (i >= scene->interior_count || scene->interiors[i] == 0) return false;
-    if (scene->interiors[i] > scene->medium_count)
-        return bp_fault_set(fault, BP_FAULT_SPHERE, "interior", "found number %u, expected one of %zu media",
-                            (unsigned)scene->interiors[i], scene->medium_count);
-    const BpMaterialKind kind = scene->materials[scene->spheres[i].material].kind;
-    if (bp_material_is(kind, BP_HAS_INSIDE)) return false;
-    return bp_fault_set(
-        fault, BP_FAULT_SPHERE, "interior",
-        "found in a sphere whose material is of type \"%s\", expected only where light passes "
-        "through: change the type to \"interface\" or \"dielectric\", or remove it",
-        bp_material_types[kind].name);
-}
-
 /* Whether a member names no texture that there is, or one of colours where a number stands. */
 static bool variation_fault(const BpScene *scene, const BpMaterial *material, BpMember m, BpFault *fault) {
     const uint32_t number = material->texture[m];
@@ -312,7 +299,7 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
                          (unsigned)sphere->material, scene->material_count);
             return BP_OK;
         }
-        if (interior_fault(scene, i, fault)) return BP_OK;
+        if (bp_interior_fault(scene, i, BP_FAULT_SPHERE, "sphere", fault)) return BP_OK;
         if (sphere->albedo != BP_NO_ALBEDO && sphere->albedo >= scene->albedo_count) {
             bp_fault_set(fault, BP_FAULT_SPHERE, "albedo", "found number %u, expected one of %zu albedos",
                          (unsigned)sphere->albedo, scene->albedo_count);
@@ -329,7 +316,8 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
     BP_TRY(bp_scene_find_coincident(scene, fault, err));
     if (fault->subject == BP_FAULT_NONE) standpoint_fault(scene, fault);
     if (fault->subject == BP_FAULT_NONE) BP_TRY(bp_scene_find_triangle_fault(scene, fault, err));
-    return fault->subject == BP_FAULT_NONE ? bp_scene_find_capsule_fault(scene, fault, err) : BP_OK;
+    if (fault->subject == BP_FAULT_NONE) BP_TRY(bp_scene_find_capsule_fault(scene, fault, err));
+    return fault->subject == BP_FAULT_NONE ? bp_scene_find_body_fault(scene, fault, err) : BP_OK;
 }
 
 BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {

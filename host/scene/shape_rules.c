@@ -3,13 +3,19 @@
 
 #include "material.h"
 
-bool bp_glass_beside_media(const BpScene *scene, const BpMaterial *material, BpFaultSubject subject,
-                           const char *noun, BpFault *fault) {
-    if (!bp_material_is(material->kind, BP_HAS_INSIDE) || scene->medium_count == 0) return false;
-    return bp_fault_set(fault, subject, "material",
-                        "found glass of %s in a scene with media, expected one or the other: use spheres of "
-                        "glass, or remove \"media\"",
-                        noun);
+bool bp_interior_fault(const BpScene *scene, size_t shape, BpFaultSubject subject, const char *noun,
+                       BpFault *fault) {
+    const uint32_t interior = bp_shape_named_interior(scene, shape);
+    if (interior == 0) return false;
+    if (interior > scene->medium_count)
+        return bp_fault_set(fault, subject, "interior", "found number %u, expected one of %zu media",
+                            (unsigned)interior, scene->medium_count);
+    const BpMaterialKind kind = scene->materials[bp_shape_material(scene, shape)].kind;
+    if (bp_material_is(kind, BP_HAS_INSIDE)) return false;
+    return bp_fault_set(fault, subject, "interior",
+                        "found in a %s whose material is of type \"%s\", expected only where light passes "
+                        "through: change the type to \"interface\" or \"dielectric\", or remove it",
+                        noun, bp_material_types[kind].name);
 }
 
 bool bp_map_without_longitude(const BpScene *scene, const BpMaterial *material, BpFaultSubject subject,

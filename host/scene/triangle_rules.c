@@ -5,6 +5,7 @@
 #include "material.h"
 #include "shape_rules.h"
 #include "triangle_area.h"
+#include "triangle_edges.h"
 #include "triangle_overlap.h"
 #include "vector.h"
 
@@ -56,75 +57,37 @@ static bool map_fault(const BpScene *scene, size_t index, const BpMaterial *mate
 
 static bool kind_fault(const BpScene *scene, size_t index, BpFault *fault) {
     const BpMaterial *material = &scene->materials[scene->triangles[index].material];
-    if (material->kind == BP_MATERIAL_INTERFACE)
-        return bp_fault_set(fault, BP_FAULT_TRIANGLE, "material",
-                            "found the type \"interface\", expected another: media inside triangles are not "
-                            "rendered yet; use a sphere as their boundary");
-    return bp_glass_beside_media(scene, material, BP_FAULT_TRIANGLE, "triangles", fault) ||
+    return bp_interior_fault(scene, scene->sphere_count + index, BP_FAULT_TRIANGLE, "triangle", fault) ||
            map_fault(scene, index, material, fault);
 }
 
 /* ---- glass is closed ---- */
-
-typedef struct Edge {
-    double ends[2][3]; /* in order */
-    int way;           /* 1: from the first to the second, or -1 */
-    uint32_t triangle, material;
-} Edge;
-
-static int compare_edges(const void *a_pointer, const void *b_pointer) {
-    const Edge *a = a_pointer, *b = b_pointer;
-    if (a->material != b->material) return a->material < b->material ? -1 : 1;
-    for (int i = 0; i < 2; i++) {
-        const int order = bp_compare_points(a->ends[i], b->ends[i]);
-        if (order != 0) return order;
-    }
-    return a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
-}
 
 static bool is_glass(const BpScene *scene, size_t triangle) {
     return bp_material_is(scene->materials[scene->triangles[triangle].material].kind, BP_HAS_INSIDE);
 }
 
 /* Each edge is there as often one way as the other. Meshes have been looked at when they were read. */
-static BpStatus find_open_edge(const BpScene *scene, size_t glass, BpFault *fault, BpError *err) {
-    Edge *edges = malloc(3 * glass * sizeof *edges);
-    size_t count = 0;
-    if (edges == NULL)
-        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the edges of %zu triangles", glass);
-    for (size_t i = 0; i < bp_scene_listed_triangles(scene); i++) {
-        if (!is_glass(scene, i)) continue;
-        for (int k = 0; k < 3; k++) {
-            const double *from = scene->triangles[i].vertices[k],
-                         *to = scene->triangles[i].vertices[(k + 1) % 3];
-            const bool forward = bp_compare_points(from, to) < 0;
-            Edge *edge = &edges[count++];
-            edge->way = forward ? 1 : -1;
-            memcpy(edge->ends[0], forward ? from : to, sizeof edge->ends[0]);
-            memcpy(edge->ends[1], forward ? to : from, sizeof edge->ends[1]);
-            edge->triangle = (uint32_t)i;
-            edge->material = scene->triangles[i].material;
-        }
-    }
-    qsort(edges, count, sizeof *edges, compare_edges);
-    for (size_t first = 0, end; first < count && fault->subject == BP_FAULT_NONE; first = end) {
+static BpStatus find_open_edge(const BpScene *scene, BpFault *fault, BpError *err) {
+    BpTriangleEdges edges;
+    BP_TRY(bp_triangle_edges(scene, &edges, err));
+    for (size_t first = 0, end; first < edges.count && fault->subject == BP_FAULT_NONE; first = end) {
         int sum = 0;
-        for (end = first; end < count && edges[end].material == edges[first].material &&
-                          bp_compare_points(edges[end].ends[0], edges[first].ends[0]) == 0 &&
-                          bp_compare_points(edges[end].ends[1], edges[first].ends[1]) == 0;
-             end++)
-            sum += edges[end].way;
+        for (end = first; end < edges.count && bp_same_edge(&edges.list[first], &edges.list[end]); end++)
+            sum += edges.list[end].way;
         if (sum == 0) continue;
-        const double *a = edges[first].ends[0], *b = edges[first].ends[1];
-        fault->index = edges[first].triangle;
+        const double *a = edges.list[first].ends[0], *b = edges.list[first].ends[1];
+        fault->index = edges.list[first].triangle;
         bp_fault_set(fault, BP_FAULT_TRIANGLE, "material",
-                     "found glass with an open edge, from (%g, %g, %g) to (%g, %g, %g), expected triangles "
-                     "of one material that enclose a body, each edge once one way and once the other; close "
+                     "found a material that lets light in, and an open edge, from (%g, %g, %g) to (%g, %g, "
+                     "%g), expected triangles "
+                     "of one material and one interior that enclose a body, each edge once one way and once "
+                     "the other; close "
                      "it, reverse its vertices, "
                      "or use a box",
                      a[0], a[1], a[2], b[0], b[1], b[2]);
     }
-    free(edges);
+    bp_triangle_edges_clear(&edges);
     return BP_OK;
 }
 
@@ -190,6 +153,6 @@ BpStatus bp_scene_find_triangle_fault(const BpScene *scene, BpFault *fault, BpEr
         }
     }
     if (glass == 0) return BP_OK;
-    if (listed_glass > 0) BP_TRY(find_open_edge(scene, listed_glass, fault, err));
+    if (listed_glass > 0) BP_TRY(find_open_edge(scene, fault, err));
     return fault->subject == BP_FAULT_NONE ? find_overlap(scene, fault, err) : BP_OK;
 }

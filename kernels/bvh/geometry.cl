@@ -67,6 +67,9 @@ typedef struct Geometry {
 #if EFFECT_CAPSULES
     SCENE_ARRAYS_OF_CAPSULES(SPLIT_MEMBER)
 #endif
+#if MEDIA_IN_TRIANGLES
+    uint bodies; /* of triangles that light passes into: it may go on straight through a vertex of one */
+#endif
 #ifdef FLAT_GROUPS_MAX
     FlatTree flat;
 #endif
@@ -92,6 +95,9 @@ static void geometry_init(SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) CAPSULES_PARAMET
     SCENE_ARRAYS_OF_CAPSULES(SET_ARRAY)
 #endif
 #undef SET_ARRAY
+#if MEDIA_IN_TRIANGLES
+    geometry->bodies = 0;
+#endif
     geometry->first_leaves = first_leaves;
     geometry->leaf_count = leaf_count;
 #if defined(FLAT_GROUPS_MAX) && defined(SCENE_PARTS)

@@ -11,6 +11,7 @@
 #define load_sphere LANED(load_sphere)
 #define centre_at LANED(centre_at)
 #define sphere_for_ray LANED(sphere_for_ray)
+#define ball_around_origin LANED(ball_around_origin)
 #define intersect_sphere LANED(intersect_sphere)
 #define intersect_own_sphere LANED(intersect_own_sphere)
 #define is_triangle LANED(is_triangle)
@@ -20,6 +21,7 @@
 #define load_triangle_if LANED(load_triangle_if)
 #define shear_at_triangles LANED(shear_at_triangles)
 #define intersect_triangle LANED(intersect_triangle)
+#define is_behind LANED(is_behind)
 #define intersect_left_triangle LANED(intersect_left_triangle)
 #define intersect_triangle_beside_sphere LANED(intersect_triangle_beside_sphere)
 #define surface_of_triangle LANED(surface_of_triangle)
@@ -114,6 +116,18 @@ static Sphere sphere_for_ray(const Geometry *geometry, const Ray *ray, vuint slo
 #endif
     return sphere;
 }
+
+#if MEDIA_IN_CAPSULES
+/* The same, and of a capsule the ball on its axis that is closest to where the ray begins. */
+static Sphere ball_around_origin(const Geometry *geometry, const Ray *ray, vuint slot) {
+    Sphere sphere = load_sphere(geometry, slot);
+#if EFFECT_MOTION
+    sphere.centre = centre_at(geometry, slot, ray->time, sphere.centre);
+#endif
+    ball_at_origin(ray, &sphere);
+    return sphere;
+}
+#endif
 #endif
 
 #if EFFECT_TRIANGLES
@@ -193,6 +207,25 @@ static void intersect_triangle_beside_sphere(const Geometry *geometry, const Ray
 }
 #endif
 
+#if MEDIA_IN_TRIANGLES
+/* Where triangles meet in a vertex, each may lie before the next around a saddle, and a ray that goes straight through all of
+ * them would go round and round. So of those that it passes the same way, where it stands, it meets only what comes behind the
+ * one that it leaves in the order of their numbers. Of those at one distance the first has been met first. */
+static vbool is_behind(const Geometry *geometry, const Ray *ray, const Triangle *left, vuint slot, vbool enters, vrefined t, vbool found) {
+    const vbool at_once = found & vbool_not(vbool_of_refined(t > splat_refined(0)));
+    if (geometry->bodies == 0 || !any_lane(at_once)) return vbool_all;
+    WideVec d;
+    d.x = wide(ray->direction.x);
+    d.y = wide(ray->direction.y);
+    d.z = wide(ray->direction.z);
+    const vbool inward = wide_below_0(wide_dot(d, wide_cross(wide_from(left->a, left->b), wide_from(left->a, left->c))));
+    const vbool same_way = (inward & enters) | (vbool_not(inward) & vbool_not(enters));
+    const vuint own = choose_uint(at_once, ray->own_slot, slot);
+    const vbool before = vbool_of_uint(gather_split_uint(geometry->slot_sphere, 0, slot) < gather_split_uint(geometry->slot_sphere, 0, own));
+    return vbool_not(at_once & same_way & before);
+}
+#endif
+
 /* Decides about candidates of which triangle_decide is doubtful. */
 static void intersect_left_triangle(const Geometry *geometry, const Ray *ray, const Shear *shear, vbool doubtful,
                                     const Triangle *triangle, vuint slot, Hit *hit) {
@@ -206,7 +239,11 @@ static void intersect_left_triangle(const Geometry *geometry, const Ray *ray, co
 #endif
     const Triangle left = load_triangle_if(geometry, doubtful, ray->own_slot);
     const vbool found = triangle_intersect(ray, shear, triangle, &left, doubtful, &t, &enters) & doubtful;
+#if MEDIA_IN_TRIANGLES
+    keep_closer(geometry, found & is_behind(geometry, ray, &left, slot, enters, t, found), t, slot, enters, hit);
+#else
     keep_closer(geometry, found, t, slot, enters, hit);
+#endif
 }
 #endif
 

@@ -91,6 +91,15 @@ typedef REFINED refined;
 #define LOBES_OF_TWO_DIRECTIONS (EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL || EFFECT_GLOSSY || EFFECT_ROUGH_DIELECTRIC)
 /* The weight of some lobes depends on the direction that they draw, so rays to lamps have weights of their own. */
 #define WEIGHTED_LOBES (SAMPLES_LAMPS && (EFFECT_ROUGH_METAL || EFFECT_GLOSSY || EFFECT_ROUGH_DIELECTRIC))
+/* Triangles and capsules are boundaries of media, too: a path knows the bodies of triangles that it is in by bits. */
+#define MEDIA_IN_BODIES (EFFECT_MEDIA && EFFECT_BODY_MEDIA)
+#define MEDIA_IN_TRIANGLES (MEDIA_IN_BODIES && EFFECT_TRIANGLES)
+#define MEDIA_IN_CAPSULES (MEDIA_IN_BODIES && EFFECT_CAPSULES)
+#if MEDIA_IN_TRIANGLES
+#define WITH_BODIES(bodies) bodies,
+#else
+#define WITH_BODIES(bodies)
+#endif
 /* Rays to lamps pass the boundaries of media, and so do the paths that are weighted against them. */
 #define LAMPS_THROUGH_MEDIA (SAMPLES_LAMPS && EFFECT_MEDIA)
 

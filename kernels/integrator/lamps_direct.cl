@@ -121,6 +121,9 @@ static vbool meets_boundary(const Scene *scene, const Hit *hit, vuint lamp, vboo
 typedef struct LampWay {
     vbool passed; /* one or more */
     vuint medium; /* behind them */
+#if MEDIA_IN_TRIANGLES
+    vuint bodies; /* around what is behind them */
+#endif
     Vec3 left;    /* of light, by the media up to there */
 } LampWay;
 
@@ -132,11 +135,17 @@ static LampWay pass_boundaries(const Scene *scene, const Path *path, vbool activ
     way.passed = vbool_none;
     way.medium = path->medium; /* a surface that reflects lies in the medium that the path has come through */
     way.left = vec3(splat(1), splat(1), splat(1));
+#if MEDIA_IN_TRIANGLES
+    way.bodies = path->bodies;
+#endif
 #if EFFECT_ROUGH_DIELECTRIC
     const vbool through = active & is_rough_dielectric(&path->lobe) & (dot3(ray->direction, TRUE_NORMAL(path->lobe.)) < splat(0));
-    if (any_lane(through)) way.medium = choose_uint(through, medium_around(scene, ray, through), way.medium);
+#if MEDIA_IN_TRIANGLES
+    way.bodies = bodies_beyond(scene, ray->own_slot, ray->inward, through, way.bodies);
 #endif
-    if (scene->boundaries[0] == NO_SLOT) return way;
+    if (any_lane(through)) way.medium = choose_uint(through, medium_around(scene, ray, WITH_BODIES(way.bodies) through), way.medium);
+#endif
+    if (scene->boundaries[first_boundary(scene)] == NO_SLOT) return way;
     const vbool far = vbool_of_uint(choice->slot >= splat_uint(DISC_SLOT));
     vuint segments = path->depth + 1u;
     for (;;) {
@@ -147,17 +156,31 @@ static LampWay pass_boundaries(const Scene *scene, const Path *path, vbool activ
         const vuint slot = choose_uint(active, hit->slot, splat_uint(0));
         const Vec3 left = transmittance(scene, choose_uint(active, way.medium, splat_uint(0)), to_real(hit->t));
         way.left = choose3(active, multiply3(way.left, left), way.left);
+#if MEDIA_IN_TRIANGLES
+        const vbool round = vbool_not(is_triangle(&scene->geometry, slot));
+        const Sphere boundary = sphere_for_ray(&scene->geometry, ray, choose_uint(round, slot, splat_uint(0)));
+#else
         const Sphere boundary = sphere_for_ray(&scene->geometry, ray, slot);
+#endif
         Point point;
         Vec3 outward;
         sphere_surface(ray, &boundary, slot, hit->t, hit->enters, &point, &outward);
+#if MEDIA_IN_TRIANGLES
+#if SMOOTH_TRIANGLES
+        Shares shares;
+#endif
+        surface_of_triangle(&scene->geometry, ray, hit, active, WITH_SHARES(&shares) &point, &outward);
+#endif
         ray->origin.high = choose3(active, point.high, ray->origin.high);
         ray->origin.low = choose3(active, point.low, ray->origin.low);
         ray->origin.error = choose(active, point.error, ray->origin.error);
         ray->cull_margin = cull_margin_of(&ray->origin);
         ray->own_slot = choose_uint(active, slot, ray->own_slot);
         ray->inward = (active & hit->enters) | (vbool_not(active) & ray->inward);
-        way.medium = choose_uint(active, medium_around(scene, ray, active), way.medium);
+#if MEDIA_IN_TRIANGLES
+        way.bodies = bodies_beyond(scene, ray->own_slot, ray->inward, active, way.bodies);
+#endif
+        way.medium = choose_uint(active, medium_around(scene, ray, WITH_BODIES(way.bodies) active), way.medium);
         const LampCone from_here = lamp_cone(&ray->origin, &choice->sphere);
         const vbool near = active & vbool_not(far);
         cone->distance = choose(near, from_here.distance, cone->distance);

@@ -17,6 +17,9 @@ static void path_init_time(SampleKey key, vbool fresh, Path *path) {
 static void path_none_media(Path *path) {
     path->unsure = vbool_none;
     path->medium = splat_uint(0);
+#if MEDIA_IN_TRIANGLES
+    path->bodies = splat_uint(0);
+#endif
 }
 
 static void path_init_media(vbool fresh, Path *path) {

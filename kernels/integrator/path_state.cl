@@ -33,6 +33,9 @@ typedef struct Path {
     vuint medium;    /* that it flies through */
     vbool unsure;    /* it may be another now */
     Vec3 likelihood; /* flight.cl */
+#if MEDIA_IN_TRIANGLES
+    vuint bodies; /* that it is in, a bit each */
+#endif
 #endif
 #if SAMPLES_LAMPS
     Lobe lobe;          /* that `direction` was drawn from; of LOBE_NONE where no lamp is sampled */

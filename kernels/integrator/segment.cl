@@ -7,7 +7,7 @@ static Segment end_segment(const Scene *scene, const Ray *ray, const Hit *hit, v
     vreal length = to_real(hit->t);
     const vbool at_catcher = meets_catcher(scene, path, hit, moving, &length);
     path->depth = choose_uint(moving, path->depth + 1u, path->depth);
-    find_media(scene, ray, moving, path);
+    find_media(scene, ray, WITH_HIT(hit) moving, path);
     vreal flown = length;
     end.scattered = fly(scene, moving, length, path, &flown);
     const vbool arrived = moving & vbool_not(end.scattered);

@@ -3,8 +3,10 @@
  * In:    paths, and how far it is to the next surface.   Out: paths that have arrived, or that a medium has scattered.
  * Knows: path.cl, exponential.cl, phase.cl, the boundaries of media (scene_types.h).   Does not know: surfaces, the sky.
  *
- * A point lies in one medium: that of the smallest sphere around it that light passes through. Between two surfaces the
- * medium is one and the same, since every boundary is a surface.
+ * A point lies in one medium: that of the smallest boundary around it. Between two surfaces the medium is one and the same,
+ * since every boundary is a surface. Spheres and capsules are asked. Of a body of triangles a path has a bit, which is set
+ * where the path comes to the inner side of one of them and cleared where it comes to the outer one: so what happens at an edge,
+ * where one triangle or both may be met, leaves it right.
  *
  * Flights are sampled by scattering alone, and absorption is a weight, exp(-absorption * length): so a medium that only
  * absorbs has no noise, and no weight exceeds 1. Where colours scatter differently, a path flies by one of the
@@ -12,13 +14,31 @@
  * Spectral Sampling", 2014): `likelihood` is the density of all its flights by each colour, over the mean of the three.
  * No weight exceeds 3, and media of one colour have none. */
 #if EFFECT_MEDIA
+#if MEDIA_IN_BODIES
+#define first_boundary(scene) (scene)->boundaries[0]
+#else
+#define first_boundary(scene) 0
+#endif
+
 /* The number of the medium around the origins of rays. */
-static vuint medium_around(const Scene *scene, const Ray *ray, vbool asked) {
+static vuint medium_around(const Scene *scene, const Ray *ray, WITH_BODIES(vuint bodies) vbool asked) {
     vuint medium = splat_uint(0);
-    for (uint entry = 0;; entry += BOUNDARY_UINTS) {
+    for (uint entry = first_boundary(scene);; entry += BOUNDARY_UINTS) {
         const uint slot = scene->boundaries[entry], inside_medium = scene->boundaries[entry + 1u];
         if (slot == NO_SLOT) return choose_uint(asked, splat_uint(inside_medium), medium);
+#if MEDIA_IN_TRIANGLES
+        if (slot >= BODY_SLOT) {
+            const vbool within = asked & vbool_of_uint((bodies >> (slot - BODY_SLOT) & 1u) != splat_uint(0));
+            medium = choose_uint(within, splat_uint(inside_medium), medium);
+            asked = asked & vbool_not(within);
+            continue;
+        }
+#endif
+#if MEDIA_IN_CAPSULES
+        const Sphere sphere = ball_around_origin(&scene->geometry, ray, splat_uint(slot));
+#else
         const Sphere sphere = sphere_for_ray(&scene->geometry, ray, splat_uint(slot));
+#endif
         Vec3 to_centre;
         const vreal power = sphere_power(&ray->origin, &sphere, &to_centre);
         const vbool own = vbool_of_uint(ray->own_slot == splat_uint(slot));
@@ -29,11 +49,38 @@ static vuint medium_around(const Scene *scene, const Ray *ray, vbool asked) {
     }
 }
 
+#if MEDIA_IN_TRIANGLES
+/* The bodies around what leaves the surface in a slot, `inward` or not, and was in `bodies` before. */
+static vuint bodies_beyond(const Scene *scene, vuint slot, vbool inward, vbool active, vuint bodies) {
+    const vbool leaves = active & is_triangle(&scene->geometry, slot);
+    if (!any_lane(leaves)) return bodies;
+    const vuint material = gather_split_uint(scene->slot_material, 0, choose_uint(leaves, slot, splat_uint(0)));
+    const vuint masks = BODY_HEAD + material * BODY_MASKS;
+    const vuint within = gather_uint(scene->boundaries, masks), without = gather_uint(scene->boundaries + 1u, masks);
+    const vuint set = choose_uint(inward, within, without), cleared = choose_uint(inward, without, within);
+    return choose_uint(leaves, (bodies & ~cleared) | set, bodies);
+}
+
+/* Where nothing is met, there is no body around: a path that rounding has put past the last boundary learns that it is out. */
+static void find_bodies(const Scene *scene, const Ray *ray, const Hit *hit, vbool asked, Path *path) {
+    const vbool from_camera = asked & vbool_of_uint(path->depth == splat_uint(1));
+    path->bodies = choose_uint(from_camera, splat_uint(scene->boundaries[1]), path->bodies);
+    path->bodies = bodies_beyond(scene, ray->own_slot, ray->inward, asked, path->bodies);
+    path->bodies = choose_uint(asked & vbool_not(is_hit(hit)), splat_uint(0), path->bodies);
+}
+#define WITH_HIT(hit) hit,
+#else
+#define WITH_HIT(hit)
+#endif
+
 /* Finds out the media of the paths that may have come into another. */
-static void find_media(const Scene *scene, const Ray *ray, vbool moving, Path *path) {
+static void find_media(const Scene *scene, const Ray *ray, WITH_HIT(const Hit *hit) vbool moving, Path *path) {
     const vbool asked = moving & path->unsure;
     if (!any_lane(asked)) return;
-    path->medium = choose_uint(asked, medium_around(scene, ray, asked), path->medium);
+#if MEDIA_IN_TRIANGLES
+    find_bodies(scene, ray, hit, asked, path);
+#endif
+    path->medium = choose_uint(asked, medium_around(scene, ray, WITH_BODIES(path->bodies) asked), path->medium);
     path->unsure = path->unsure & vbool_not(asked);
 }
 
@@ -110,6 +157,7 @@ static void scatter_in_medium(const Scene *scene, Path *path) {
 /* Of what a camera ray shows. */
 #define seen_through(path, radiance) multiply3((path)->throughput, radiance)
 #else
+#define WITH_HIT(hit)
 #define find_media(scene, ray, moving, path)
 #define fly(scene, moving, distance, path, length) vbool_none
 #define scatter_in_medium(scene, path)

@@ -11,6 +11,7 @@
 #define capsule_is_candidate LANED(capsule_is_candidate)
 #define stand_on_axis LANED(stand_on_axis)
 #define choose_ball LANED(choose_ball)
+#define ball_at_origin LANED(ball_at_origin)
 
 static vbool has_axis(const Sphere *sphere) {
     return (sphere->axis.x != splat(0)) | (sphere->axis.y != splat(0)) | (sphere->axis.z != splat(0));
@@ -55,6 +56,15 @@ FORCE_INLINE static void choose_ball(const Ray *ray, vbool own, Sphere *capsule)
     capsule->beyond = (inside & capsule->beyond) | (vbool_not(inside) & entered.beyond);
     capsule->inside = inside;
 }
+
+#if MEDIA_IN_CAPSULES
+static void ball_at_origin(const Ray *ray, Sphere *capsule) {
+    const Vec3 first = capsule->centre, way = subtract3(ray->origin.high, first);
+    capsule->is_capsule = has_axis(capsule);
+    const vreal length2 = choose(capsule->is_capsule, dot3(capsule->axis, capsule->axis), splat(1));
+    stand_on_axis(divide(dot3(way, capsule->axis), length2), first, capsule);
+}
+#endif
 
 FORCE_INLINE static vbool capsule_is_candidate(const Ray *ray, vreal bound, const Sphere *capsule) {
     Sphere ball = *capsule;

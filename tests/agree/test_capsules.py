@@ -148,9 +148,8 @@ class Capsules(ScenePictures):
         for said, members in (
                 ("capsules[0].radius", {"capsules": [bar("clay", radius=-0.3)]}), ("capsules[0].radius", {"capsules": [bar("clay", radius=0)]}),
                 ("no rays are sent to capsules", {"capsules": [bar("lamp")]}), ("no rays are sent to capsules", {"capsules": [bar("glow")]}),
-                ("use a sphere as their boundary", {"capsules": [bar("skin")]}), ("capsules have no longitude", {"capsules": [bar("mapped")]}),
-                ("glass of capsules in a scene with media", {"media": {"fog": {"scattering": 1}}, "medium": "fog", "capsules": [bar("glass")]}),
-                ("capsules stand still", {"capsules": [bar("clay", center_end=[0, 0, 0])]}), ("capsules surround no media", {"capsules": [bar("clay", interior="fog")]}),
+                ("capsules have no longitude", {"capsules": [bar("mapped")]}),
+                ("capsules stand still", {"capsules": [bar("clay", center_end=[0, 0, 0])]}), ("found in a capsule whose material is of type \"lambertian\"", {"media": {"fog": {}}, "capsules": [bar("clay", interior="fog")]}),
                 ("two points", {"capsules": [bar("clay", ends=[[0, 0, 0]])]}), ("1e9", {"capsules": [bar("clay", ends=[[0, 0, 0], [2e9, 0, 0]])]}),
                 ("capsules[0].colors: found colours for the material \"glass\", which has no albedo", {"capsules": [bar("glass", colors=[[0, 0, 0], [1, 1, 1]])]}),
                 ("capsules[0].colors: found a list of 1, expected two colours", {"capsules": [bar("clay", colors=[[0, 0, 0]])]}),

@@ -196,16 +196,14 @@ class Triangles(ScenePictures):
         self.refused(["triangles[0].vertices", "without an area"], triangles=[{"vertices": [[0, 0, 0], [1, 1, 1], [2, 2, 2]], "material": "white"}])
         self.refused(["triangles[0].vertices", "three points"], triangles=[{"vertices": triangle[:2], "material": "white"}])
         self.refused(["triangles[0].material", "gold"], triangles=[{"vertices": triangle, "material": "gold"}])
-        self.refused(["triangles[0]", "unknown member"], triangles=[{"vertices": triangle, "material": "white", "interior": "fog"}])
+        self.refused(["triangles[0].interior", 'found the medium "fog"'], triangles=[{"vertices": triangle, "material": "white", "interior": "fog"}])
         self.refused(["-1e9 to 1e9", "larger unit"], triangles=[{"vertices": [[0, 0, 0], [2e9, 0, 0], [0, 1, 0]], "material": "white"}])
         self.refused(["quads[0].material", "open edge", "use a box"], quads=[{**quad, "material": "glass"}])
         self.refused(["quads[0].material", "open edge", "use a box"], quads=[{**quad, "material": "frosted"}])
-        self.refused(["boxes[0].material", "media"], boxes=[{**box, "material": "frosted"}], media={"fog": {"scattering": [1, 1, 1]}})
         self.refused(["boxes[1]", "boxes[0] and boxes[1] in one plane"],
                      boxes=[{**box, "material": "frosted"}, {"corners": [[1, 0, 0], [2, 1, 1]], "material": "white"}])
-        self.refused(["quads[0].material", "interface", "use a sphere"], quads=[{**quad, "material": "skin"}])
+        self.refused(["quads[0].material", "open edge", "use a box"], quads=[{**quad, "material": "skin"}])
         self.refused(["triangles[0].material", "no texture coordinates", "solid"], triangles=[{"vertices": triangle, "material": "mapped"}])
-        self.refused(["boxes[0].material", "media"], boxes=[box], media={"fog": {"scattering": [1, 1, 1]}})
         self.refused(["boxes[1]", "boxes[0] and boxes[1] in one plane", "millionth"],
                      boxes=[box, {"corners": [[1, 0, 0], [2, 1, 1]], "material": "glass"}])
         self.refused(["quads[0] and boxes[0] in one plane"], quads=[FLOOR], boxes=[box])

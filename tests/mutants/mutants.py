@@ -102,6 +102,11 @@ def media_cases(*names):
     return Script("tests/media/test_media.py", names, "9 media")
 
 
+def body_cases(*names):
+    """Cases of tests/media/test_body_media.py."""
+    return Script("tests/media/test_body_media.py", names, "9 media")
+
+
 rare_ways = Script("tests/unseen/test_unseen_program.py", ("Unseen.test_rare_ways",), "1 exact")
 
 
@@ -176,6 +181,7 @@ def patch(path, find, replace):
 
 # A patch of kernel text names no file: the text must stand exactly once in all of kernels/.
 KERNEL, PACK, TRANSFER = "kernels", "host/packed/pack.c", "host/image/transfer.c"
+BOUNDARIES = "host/packed/boundaries.c"
 SHINING = "kernels/light/triangle_lamps.cl"
 MAP = "kernels/texture/triangle_map.cl"
 FOLD, BENT = "kernels/bsdf/fold.cl", "kernels/integrator/smooth_surface.cl"
@@ -1249,7 +1255,7 @@ MUTANTS = [
     Mutant("the ball around lamps is that of their first places", "this program: a way that leaves it is lit by chance",
            [patch("host/packed/lamp_tree.c", "share <= 1; ++share", "share < 1; ++share")], [test("test_lamp_tree", "balls_hold_lamps_that_move")]),
     Mutant("boundaries of media end rays to lamps", "this program: so it was",
-           [patch(KERNEL, "if (scene->boundaries[0] == NO_SLOT) return way;", "return way;")], [lamp_case("90.1")]),
+           [patch(KERNEL, "if (scene->boundaries[first_boundary(scene)] == NO_SLOT) return way;", "return way;")], [lamp_case("90.1")]),
     Mutant("boundaries cost no segment", "rays to lamps that are longer than a path may be",
            [patch(KERNEL, "segments += splat_uint(1);", "")], [lamp_case("93.2")]),
     Mutant("one boundary too few", "the last segment is not allowed for",
@@ -1258,10 +1264,10 @@ MUTANTS = [
     Mutant("smoke casts no shadow", "boundaries are passed, and the media forgotten",
            [patch(KERNEL, "if (any_lane(way.passed)) light = multiply3(light, way.left);", "")], [lamp_case("90.1")]),
     Mutant("a clear boundary stops rays to lamps", "this program: boundaries were forgotten where no medium does anything",
-           [patch("host/packed/pack.c", "filled += scene->materials[scene->spheres[i].material].kind == BP_MATERIAL_INTERFACE;", "filled += 0;")],
+           [patch("host/scene/medium.c", "bp_scene_filled(scene) > 0 || bp_scene_interfaces(scene) > 0;", "bp_scene_filled(scene) > 0;")],
            [lamp_case("90.8")]),
     Mutant("behind a boundary the medium is the same", "the medium is not asked anew",
-           [patch(KERNEL, "way.medium = choose_uint(active, medium_around(scene, ray, active), way.medium);", "")], [lamp_case("90.1")]),
+           [patch(KERNEL, "way.medium = choose_uint(active, medium_around(scene, ray, WITH_BODIES(way.bodies) active), way.medium);", "")], [lamp_case("90.1")]),
     Mutant("behind a boundary the lamp is as far as before", "distances from the vertex, for a ray that began anew",
            [patch(KERNEL, "cone->distance = choose(near, from_here.distance, cone->distance);", ""),
             patch(KERNEL, "cone->tangent = choose(near, from_here.tangent, cone->tangent);", "")], [lamp_case("90.9")]),
@@ -1493,12 +1499,10 @@ MUTANTS = [
            [images("films_of_other_images_do_not_merge")]),
     # ---- media ---------------------------------------------------------------------------------------------
     Mutant("the largest sphere decides", "this program: bubbles in tinted glass are tinted",
-           [patch(PACK, "if (a->radius != b->radius) return a->radius < b->radius ? -1 : 1;\n    return a->sphere", "if (a->radius != b->radius) return a->radius > b->radius ? -1 : 1;\n    return a->sphere")],
+           [patch(BOUNDARIES, "return a->radius < b->radius ? -1 : 1;", "return a->radius > b->radius ? -1 : 1;")],
            [check("media-tinted-glass", 64)]),
     Mutant("a clear sphere left out", "this program: only what has an interior is a boundary",
-           [patch(PACK, "packed->boundaries[BOUNDARY_UINTS * i + 1] = bp_sphere_interior(scene, boundaries[i].sphere);",
-                  "{ const uint32_t inside = bp_sphere_interior(scene, boundaries[i].sphere);"
-                  " packed->boundaries[BOUNDARY_UINTS * i + 1] = inside != 0 ? inside : bp_scene_medium(scene); }")],
+           [patch(BOUNDARIES, "entry[1] = list[i].medium;", "entry[1] = list[i].medium != 0 ? list[i].medium : bp_scene_medium(scene);")],
            [media_cases("nested_and_overlapping")]),
     Mutant("once inside, always inside", "classic: the medium of the first sphere that was entered",
            [patch(KERNEL, "path->unsure = path->unsure | passed;", "(void)path;")], [check("media-smoke")]),
@@ -2234,7 +2238,7 @@ MUTANTS = [
     Mutant("a triangle without an area is rendered", "triangles: a line for a triangle",
            [patch("host/scene/triangle_rules.c", "bp_length(area) > LEAST_AREA * longest * longest &&", "bp_length(area) >= 0 &&")], [triangles("refusals")]),
     Mutant("glass whose sides face both ways", "triangles: each edge twice, whichever way",
-           [patch("host/scene/triangle_rules.c", "edge->way = forward ? 1 : -1;", "edge->way = count % 2 == 0 ? 1 : -1;")], [triangles("refusals")]),
+           [patch("host/scene/triangle_rules.c", "sum += edges.list[end].way;", "sum += (end - first) % 2 == 0 ? 1 : -1;")], [triangles("refusals")]),
     Mutant("glass on glass", "triangles: what lies in one plane with glass is not looked for",
            [patch("host/scene/triangle_overlap.c", "return !apart(a, b, normal, TOUCHES * longest) && !apart(b, a, other, TOUCHES * longest);", "return false;")],
            [triangles("refusals")]),
@@ -2287,4 +2291,39 @@ MUTANTS = [
     Mutant("a ground that spheres alone stand on", "particles: triangles of particles above a shadow catcher",
            [patch("host/scene/shadow_catcher.c", "!scene->mesh_files[mesh].in_memory &&\n           !scene->mesh_files[mesh].of_particles)",
                   "!scene->mesh_files[mesh].in_memory)")], [shape_scenes("cameras_and_catchers")]),
+    Mutant("a body's bit is toggled", "media in bodies: by each triangle that is passed, whichever way",
+           [patch(KERNEL, "return choose_uint(leaves, (bodies & ~cleared) | set, bodies);", "return choose_uint(leaves, bodies ^ (cleared | set), bodies);")],
+           [body_cases("edges_and_vertices")]),
+    Mutant("bodies are never left", "media in bodies: bits are set alone",
+           [patch(KERNEL, "return choose_uint(leaves, (bodies & ~cleared) | set, bodies);", "return choose_uint(leaves, bodies | set, bodies);")], [body_cases("concave")]),
+    Mutant("round and round through a vertex", "media in bodies: triangles around a saddle, each before the next",
+           [patch(KERNEL, "return vbool_not(at_once & same_way & before);", "return vbool_all;")], [body_cases("edges_and_vertices")]),
+    Mutant("bodies inside out", "media in bodies: the sides of triangles that run the other way",
+           [patch(BOUNDARIES, "masks[scene->bodies.list[b].inside_out ? 1 : 0] = 1u << b;", "masks[0] = 1u << b;")], [body_cases("quads_and_triangles")]),
+    Mutant("the camera is in no body", "media in bodies: all paths begin outside",
+           [patch(BOUNDARIES, "boundaries[1] = bodies_around(scene, table->origin, tree->single_precision);", "boundaries[1] = 0;")], [body_cases("camera_inside")]),
+    Mutant("crossings without a side", "media in bodies: in and out of a hole counted alike",
+           [patch("host/packed/winding.c", "return around != 0 && sign_of_volume(a, b, c) == around ? around : 0;",
+                  "return around != 0 && sign_of_volume(a, b, c) == around ? 1 : 0;")], [body_cases("camera_inside")]),
+    Mutant("crossings behind the camera", "media in bodies: a line for the ray",
+           [patch("host/packed/winding.c", "return around != 0 && sign_of_volume(a, b, c) == around ? around : 0;", "return around;")], [body_cases("camera_inside")]),
+    Mutant("a capsule as large as its radius", "media in bodies: order by radius",
+           [patch(BOUNDARIES, "cbrt((capsule->radius + 0.75 * length) * capsule->radius * capsule->radius)", "capsule->radius")], [body_cases("nested_and_overlapping")]),
+    Mutant("a box larger than its ball", "media in bodies: the radius of a cube's ball",
+           [patch(BOUNDARIES, "cbrt(body->volume * (0.75 / PI))", "cbrt(body->volume)")], [body_cases("nested_and_overlapping")]),
+    Mutant("in a capsule by the ball ahead", "media in capsules: the ball that the ray meets for that around its origin",
+           [patch(KERNEL, "const Sphere sphere = ball_around_origin(&scene->geometry, ray, splat_uint(slot));",
+                  "const Sphere sphere = sphere_for_ray(&scene->geometry, ray, splat_uint(slot));")], [body_cases("nested_and_overlapping", "camera_inside")]),
+    Mutant("rays to lamps forget bodies", "media in bodies: bits stay as they were at the vertex",
+           [patch(KERNEL, "way.bodies = bodies_beyond(scene, ray->own_slot, ray->inward, active, way.bodies);", "")], [body_cases("behind")]),
+    Mutant("rays to lamps begin anew on a ball", "media in bodies: the point on the triangle that was passed",
+           [patch(KERNEL, "surface_of_triangle(&scene->geometry, ray, hit, active, WITH_SHARES(&shares) &point, &outward);", "")], [body_cases("behind")]),
+    Mutant("one entry for all bodies", "media in bodies: triangles of every body set the bit of the first",
+           [patch(PACK, "return slots->packed->first_body + bp_body_of(scene, triangle);", "return slots->packed->first_body;")], [body_cases("nested_and_overlapping")]),
+    Mutant("a lens in and out of a body", "media in bodies: the lens is not looked at",
+           [patch("host/scene/body_rules.c", "return found > 0 && meets(opening, crossings[0], crossings[found - 1]);", "return false;")], [body_cases("documents")]),
+    Mutant("bodies beyond the bits", "media in bodies: the limit is not kept",
+           [patch("host/scene/body_rules.c", "if (bodies->count > BP_BODIES_MAX) {", "if (bodies->count > 2 * BP_BODIES_MAX) {")], [body_cases("documents")]),
+    Mutant("films of boxes with other media", "media in bodies: the hash has no interiors of triangles",
+           [patch("host/film/film_scene.c", "hash = mix_interior(hash, scene, scene->sphere_count + i);", "")], [body_cases("films")]),
 ]

@@ -20,17 +20,19 @@
 
 typedef struct EffectsScene {
     BpScene scene; /* points into the arrays below: pass it on by address, do not copy it */
-    BpMaterial materials[28];
+    BpMaterial materials[29];
     BpSphere spheres[48];
-    BpTriangle triangles[4];
-    float normals[3][3][3], coordinates[4][6];
+    BpTriangle triangles[8];
+    float normals[3][3][3], coordinates[8][6];
     BpCapsule capsules[4];
     BpTexture textures[10];
     BpImage image, sky, light, *images[3];
     float image_texels[5 * 3 * 3], sky_texels[8 * 4 * 3], light_texels[2 * 3];
     double ends[48][3];
     BpMedium media[2];
-    uint32_t interiors[48];
+    uint32_t interiors[48], triangle_interiors[8], capsule_interiors[4];
+    BpBody body;
+    uint32_t body_of[8];
 } EffectsScene;
 
 /* A tree is a choice like an effect. */
@@ -65,6 +67,9 @@ static const CoveringRule effects_rules[] = {
     {EFFECT_BIT(SMOOTH_NORMALS), EFFECT_BIT(TRIANGLES)},
     {EFFECT_BIT(TEXTURE_COORDINATES), EFFECT_BIT(TRIANGLES)},
     {EFFECT_BIT(TEXTURE_COORDINATES), EFFECT_BIT(TEXTURES)},
+    /* Boundaries of media. */
+    {EFFECT_BIT(BODY_MEDIA), EFFECT_BIT(MEDIA)},
+    {EFFECT_BIT(BODY_MEDIA), EFFECT_BIT(TRIANGLES) | EFFECT_BIT(CAPSULES)},
     /* Of an image around it knows no light. */
     {EFFECT_BIT(SHADOW_CATCHER) | EFFECT_BIT(ENVIRONMENT), 0},
 };
@@ -300,8 +305,42 @@ static inline void effects_capsules(EffectsScene *made) {
     }
 }
 
-/* Media in most of what light passes through, and around all in every fifth set that has light of its own:
- * that of the sky does not come through. */
+/* A pyramid in front of the wall and among spheres, of a material that lets light in: the last four
+ * triangles. */
+static inline void effects_body(EffectsScene *made, uint32_t material) {
+    static const double at[4][3] = {
+        {-1.2, -0.4, -2.5}, {0.8, -0.4, -2.2}, {-0.1, -0.3, -3.6}, {-0.2, 1.1, -2.8}};
+    static const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    BpScene *scene = &made->scene;
+    for (int i = 0; i < 4; ++i) {
+        BpTriangle *triangle = &made->triangles[scene->triangle_count++];
+        for (int k = 0; k < 3; ++k) memcpy(triangle->vertices[k], at[faces[i][k]], sizeof at[0]);
+        triangle->material = material;
+        triangle->albedo = BP_NO_ALBEDO;
+    }
+    for (int i = 4; i < 8; ++i) made->triangle_interiors[i] = 1;
+    scene->triangle_interiors = made->triangle_interiors;
+    scene->triangle_interior_count = 8;
+    made->body = (BpBody){.first = 4, .material = material, .interior = 1, .volume = 0.6};
+    for (uint32_t i = 0; i < 8; ++i) made->body_of[i] = i < 4 ? BP_NO_BODY : 0;
+    scene->bodies = (BpBodies){&made->body, 1, made->body_of};
+}
+
+/* It, and the last capsule, in sets where they are boundaries. */
+static inline void effects_bodies(EffectsScene *made) {
+    /* One without textures, which lie around spheres. */
+    const uint32_t edge = (uint32_t)made->scene.material_count;
+    effects_material(made, BP_MATERIAL_INTERFACE, 1, 1, 1);
+    if (made->scene.triangle_count > 0) effects_body(made, edge);
+    if (made->scene.capsule_count == 0) return;
+    made->capsules[3].material = edge;
+    made->capsule_interiors[3] = 2;
+    made->scene.capsule_interiors = made->capsule_interiors;
+    made->scene.capsule_interior_count = 4;
+}
+
+/* Media in most of what light passes through, and around all in every fifth set where something emits:
+ * without an end they hide the sky. */
 static inline void effects_media(EffectsScene *made, uint32_t bits) {
     made->media[0] = (BpMedium){
         .name = (char *)"grey", .absorption = {0.5, 0.5, 0.5}, .scattering = {2, 2, 2}, .anisotropy = 0.4};
@@ -368,6 +407,7 @@ static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES)) effects_textures(made, bits);
     if (bp_effects_has(bits, BP_EFFECT_TRIANGLES)) effects_triangles(made, bits);
     if (bp_effects_has(bits, BP_EFFECT_CAPSULES)) effects_capsules(made);
+    if (bp_effects_has(bits, BP_EFFECT_BODY_MEDIA)) effects_bodies(made);
     effects_spheres(made, tree);
     if (bp_effects_has(bits, BP_EFFECT_MOTION)) effects_motion(made);
     if (bp_effects_has(bits, BP_EFFECT_MEDIA)) effects_media(made, bits);

@@ -55,6 +55,7 @@ MARKS = {
     "ENVIRONMENT": ["environment_radiance", "has_environment"],
     "MOTION": ["path->time", "ray->time"],
     "MEDIA": ["medium_around", "exp_minus", "interface_sample"],
+    "BODY_MEDIA": [],  # TOGETHER
     "CAUSTICS": [],  # FOCUSING
     "TRIANGLE_LAMPS": [],  # TOGETHER, SHINING
     "SMOOTH_NORMALS": [],  # TOGETHER
@@ -78,7 +79,9 @@ SHARED = {
 TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURES", "NOISE"},
             "image_texture": {"TEXTURES", "IMAGES"}, " TriangleView": {"TRIANGLES", "TRIANGLE_LAMPS"},
             "smooth_surface": {"TRIANGLES", "SMOOTH_NORMALS"}, "scatter_folded": {"TRIANGLES", "SMOOTH_NORMALS"},
-            "normal_leaves": {"TRIANGLES", "SMOOTH_NORMALS"},
+            "bodies_beyond": {"TRIANGLES", "MEDIA", "BODY_MEDIA"},
+            "path->bodies": {"TRIANGLES", "MEDIA", "BODY_MEDIA"}, "ball_around_origin": {"CAPSULES", "MEDIA", "BODY_MEDIA"},
+            "normal_leaves": {"TRIANGLES", "SMOOTH_NORMALS"}, "Shares": {"TRIANGLES", "SMOOTH_NORMALS"},
             **{mark: {"TRIANGLES", "TEXTURES", "TEXTURE_COORDINATES"}
                for mark in ("triangle_map", "MapPlace", "map_place", "coordinate_leaves", "triangle_coordinates", "triangle_between", "rows_ring")}}
 # Code that needs LAMPS, something to be lit (IS_LIT of dialect/real.cl), and one of the effects named.
