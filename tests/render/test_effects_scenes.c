@@ -46,6 +46,8 @@ static const struct {
     {"next-bouncing-spheres", "lambertian metal dielectric lens textures motion roulette; tree"},
     {"next-earth", "lambertian textures images roulette"},
     {"next-cornell-box", "lambertian emission light_sampling triangles triangle_lamps roulette; tree"},
+    {"next-cornell-smoke", "lambertian emission light_sampling media body_media triangles triangle_lamps "
+                           "roulette; tree"},
     {"next-cornell-empty", "lambertian emission light_sampling triangles triangle_lamps roulette"},
     {"next-final",
      "lambertian metal dielectric emission light_sampling textures noise images motion media triangles "
