@@ -67,6 +67,11 @@ static void find_bodies(const Scene *scene, const Ray *ray, const Hit *hit, vboo
     path->bodies = choose_uint(from_camera, splat_uint(scene->boundaries[1]), path->bodies);
     path->bodies = bodies_beyond(scene, ray->own_slot, ray->inward, asked, path->bodies);
     path->bodies = choose_uint(asked & vbool_not(is_hit(hit)), splat_uint(0), path->bodies);
+#if PILOT
+    /* A path from a light begins anywhere. It is in the body whose boundary it meets from inside. */
+    const vbool leaves_no_shape = asked & is_hit(hit) & vbool_of_uint(ray->own_slot == splat_uint(NO_SLOT));
+    path->bodies = bodies_beyond(scene, hit->slot, vbool_not(hit->enters), leaves_no_shape, path->bodies);
+#endif
 }
 #define WITH_HIT(hit) hit,
 #else

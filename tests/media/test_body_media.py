@@ -403,6 +403,24 @@ def single_scattering():
     return f"{found:.4f}, by quadrature {wanted:.4f}"
 
 
+def unseen_light():
+    """What the pilot's paths from a tiny lamp lose in a box around it: between what they lose in the balls inside and around that."""
+    side, materials = 0.6, {**MATERIALS, "bright": {"type": "diffuse_light", "emit": [9000] * 3}, "thick": {"type": "dielectric", "refraction_index": 1.5}}
+    common = [ball((0, -100, 0), 100, None, "matte"), ball((0.5, 1, 0), 0.5, None, "thick"), ball((0, 2.5, 0), 0.02, None, "bright")]
+    found = []
+    for around in (ball((0, 2.5, 0), side, "c"), box((-side, 2.5 - side, -side), (side, 2.5 + side, side), "c"), ball((0, 2.5, 0), side * math.sqrt(3), "c")):
+        members = by_list([*common, around])
+        members["boxes"] = members["boxes"] or [box((50, 50, 50), (51, 51, 51), None, "matte")]  # so that caustics are left to chance
+        document = {**scene(camera=pinhole(lookfrom=[0, 2, 6], lookat=[0, 0.8, 0], max_depth=20), side=32, **members), "materials": materials, "background": [0, 0, 0]}
+        with tempfile.TemporaryDirectory() as folder:
+            stats = os.path.join(folder, "stats.json")
+            with_file(document, lambda path, stats=stats: run("render", path, "-o", "-", "--format", "pfm", "--quiet", "--spp", "16", "--stats", stats))
+            with open(stats, encoding="utf-8") as file:
+                found.append(json.load(file)["unseen"]["mean"])
+    assert found[0] > 1.05 * found[1] and found[1] > 1.05 * found[2], found
+    return f"{found[1]:.3g}, between {found[2]:.3g} and {found[0]:.3g}"
+
+
 def said_of(document, files=None):
     with tempfile.TemporaryDirectory() as folder:
         for name, text in {"x.json": json.dumps(document), **(files or {})}.items():
@@ -488,5 +506,5 @@ def explained():
 
 
 CASES = [chords, quads_and_triangles, concave, nested_and_overlapping, camera_inside, documents, films, explained]
-DEEP_CASES = [edges_and_vertices, furnace, beer_in_glass, behind, single_scattering, forms, lamps]
+DEEP_CASES = [edges_and_vertices, furnace, beer_in_glass, behind, single_scattering, unseen_light, forms, lamps]
 sys.exit(run_cases(CASES, DEEP_CASES))

@@ -2326,4 +2326,6 @@ MUTANTS = [
            [patch("host/scene/body_rules.c", "if (bodies->count > BP_BODIES_MAX) {", "if (bodies->count > 2 * BP_BODIES_MAX) {")], [body_cases("documents")]),
     Mutant("films of boxes with other media", "media in bodies: the hash has no interiors of triangles",
            [patch("host/film/film_scene.c", "hash = mix_interior(hash, scene, scene->sphere_count + i);", "")], [body_cases("films")]),
+    Mutant("lights begin outside of all bodies", "media in bodies: paths from lamps in smoke fly through clear air",
+           [patch(KERNEL, "path->bodies = bodies_beyond(scene, hit->slot, vbool_not(hit->enters), leaves_no_shape, path->bodies);", "")], [body_cases("unseen_light")]),
 ]
