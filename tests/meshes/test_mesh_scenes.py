@@ -342,12 +342,11 @@ class Meshes(ProgramTest):
                            ({"file": "cube.off", "material": "clay", "scale": [1, 0, 1]}, "meshes[0].scale"),
                            ({"file": "cube.off", "material": "clay", "rotate": 90}, "meshes[0].rotate"),
                            ({"file": "cube.off", "material": "clay", "smooth": 1}, "meshes[0].smooth: found 1, expected true or false"),
-                           ({"file": "cube.off", "material": "clay", "interior": "fog"}, "meshes[0].interior: not for meshes"),
+                           ({"file": "cube.off", "material": "clay", "interior": "fog"}, 'meshes[0].interior: found the medium "fog"'),
                            ({"file": "cube.off", "material": "clay", "motion": [0, 1, 0]}, "meshes[0].motion: not for meshes"),
                            ({"file": "cube.off", "material": "clay", "colour": 1}, "meshes[0].colour: unknown member"),
                            ({"file": "cube.off", "materials": {"bark": "clay"}}, 'meshes[0].materials.bark: the file names no materials of faces'),
                            ({"file": "cube.off", "materials": {}}, "without a material of its own"),
-                           ({"file": "cube.off", "material": "skin"}, "meshes[0].material: triangle 0 (from 0) of cube.off"),
                            ({"file": "cube.off", "material": "mapped"}, "no texture coordinates"),
                            ({"file": "cube.off", "material": "clay", "translate": [2e9, 0, 0]}, "meshes[0]: triangle 0 (from 0) of cube.off"),
                            ("cube.off", "meshes[0]: found")):
