@@ -147,8 +147,9 @@ typedef struct PackedFocuser {
     real power; /* of the light that it catches, in the unit of the lamps' power: over 4 times its radius
                    squared */
     real refraction_index; /* of a mirror any above 1 */
-    real chains[3];        /* the probabilities with which each chain is tried: by the number of its chords */
-    real reserved[3];
+    real chains[4];        /* the probabilities with which each chain is tried: by the number of its chords */
+    real pair_power;       /* as `power`, of the light that other focusers bring to it */
+    real turn;             /* cos of the angle that is left to vertex and target by three chords */
 } PackedFocuser;
 
 /* The slot of its sphere, FRESNEL_... or FOCUSER_MIRROR, and its targets: the number of the first, and how
@@ -217,6 +218,8 @@ typedef struct PackedVariation {
 #define FOCUSER_POWER 4u
 #define FOCUSER_INDEX 5u
 #define FOCUSER_CHAINS 6u
+#define FOCUSER_PAIR_POWER 10u
+#define FOCUSER_TURN 11u
 #define FOCUSER_SLOT 0u /* of PackedFocuserPlace, like the next three */
 #define FOCUSER_VARIANT 1u
 #define FOCUSER_FIRST 2u
@@ -455,6 +458,8 @@ BP_PLACE(FOCUSER_RADIUS, PackedFocuser, radius, real);
 BP_PLACE(FOCUSER_POWER, PackedFocuser, power, real);
 BP_PLACE(FOCUSER_INDEX, PackedFocuser, refraction_index, real);
 BP_PLACE(FOCUSER_CHAINS, PackedFocuser, chains, real);
+BP_PLACE(FOCUSER_PAIR_POWER, PackedFocuser, pair_power, real);
+BP_PLACE(FOCUSER_TURN, PackedFocuser, turn, real);
 BP_PLACE(FOCUSER_SLOT, PackedFocuserPlace, slot, packed_uint);
 BP_PLACE(FOCUSER_VARIANT, PackedFocuserPlace, variant, packed_uint);
 BP_PLACE(FOCUSER_FIRST, PackedFocuserPlace, first, packed_uint);

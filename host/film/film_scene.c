@@ -1,6 +1,7 @@
 /* film_scene.c: the scale of a scene's sums, and the hash by which films are compared; see film.h. */
 #include "film.h"
 
+#include "packed/focusers.h"
 #include "roulette_types.h"
 #include "scene/material.h"
 
@@ -103,11 +104,13 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLight
         roulette == BP_ROULETTE_ON && max_depth > ROULETTE_SEGMENTS ? max_depth - ROULETTE_SEGMENTS : 0;
     double bound = weight * brightest * geometric(passed_on, max_depth, passed_on > 0 ? deep : 0);
     /* A ray to a lamp brings half of its radiance at most, and so does each of the up to three ways through a
-     * focuser. To the camera lead up to three through each of three chains. */
+     * focuser, and of the up to four through a pair. To the camera lead up to three through each of four
+     * chains. */
     const double focused = caustics == BP_CAUSTICS_ON ? 3 * 0.5 : 0;
+    const double paired = caustics == BP_CAUSTICS_ON && bp_focusers_pair(scene) ? 4 * 0.5 : 0;
     if (light_sampling != BP_LIGHT_SAMPLING_OFF && max_depth >= 2)
         bound += weight * brightest_lamp *
-                 ((0.5 + focused) * scattered * geometric(scattered, max_depth - 1, deep) + 3 * focused);
+                 ((0.5 + focused + paired) * scattered * geometric(scattered, max_depth - 1, deep) + 4 * focused + paired);
     if (scene->backdrop != BP_BACKDROP_COLORS) return bound;
     return fmax(bound, fmax(largest(scene->backdrop_bottom), largest(scene->backdrop_top)));
 }

@@ -107,6 +107,7 @@ static const struct {
     {"light/triangle_lamps.cl", IN_ALL},
     {"light/discs.cl", IN_ALL},
     {"light/focusers.cl", IN_ALL},
+    {"light/focuser_pairs.cl", IN_ALL},
     {"integrator/path_state.cl", IN_ALL},
     {"integrator/path_effects.cl", IN_ALL},
     {"integrator/path.cl", IN_ALL},
@@ -122,6 +123,8 @@ static const struct {
     {"medium/flight.cl", IN_ALL},
     {"integrator/pixels.cl", IN_ALL},
     {"integrator/lamps_direct.cl", IN_ALL},
+    {"integrator/chain_trace.cl", IN_ALL},
+    {"integrator/caustic_pairs.cl", IN_ALL},
     {"integrator/caustics.cl", IN_ALL},
     {"integrator/discs_direct.cl", IN_ALL},
     {"integrator/shadow_catcher.cl", IN_ALL},
@@ -242,6 +245,7 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
         fprintf(out, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
                 bp_effects_has(options->effects, (BpEffect)e));
     fprintf(out, "#define ACCELERATION_TREE %d\n", options->tree);
+    fprintf(out, "#define FOCUSER_PAIRS %d\n", options->focuser_pairs);
     fprintf(out, "#define TRIANGLES_ALONE %d\n", options->triangles_alone);
     if (options->parts > 1)
         fprintf(out, "#define SCENE_PARTS %u\n#define PART_LENGTH %uu\n", options->parts,

@@ -485,6 +485,7 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
         snprintf(effects->reason[BP_EFFECT_CAUSTICS], size, "no rays are sent to lamps");
     else
         effects->caustics = bp_focusers_explain(scene, size, effects->reason[BP_EFFECT_CAUSTICS]);
+    effects->focuser_pairs = effects->caustics && bp_focusers_pair(scene);
     effects->dims = explain_roulette(scene, size, effects->reason[BP_EFFECT_ROULETTE]);
     if (effects->dims && scene->camera.max_depth > ROULETTE_SEGMENTS)
         effects->bits |= 1u << BP_EFFECT_ROULETTE;

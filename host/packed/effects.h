@@ -57,6 +57,7 @@ _Static_assert(BP_EFFECT_COUNT < 32, "effects are the bits of a uint32_t");
 
 typedef struct BpEffects {
     uint32_t bits;        /* bit e set: effect e is simulated */
+    bool focuser_pairs;   /* with CAUSTICS: light may come by way of two focusers in turn */
     bool triangles_alone; /* and no code for spheres, unless options ask for more */
     bool caustics;        /* CAUSTICS is simulated too, if the options enable it */
     bool dims; /* paths may come to carry little: ROULETTE is simulated if options let them be deep */

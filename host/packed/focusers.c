@@ -28,6 +28,9 @@
  * samples that rays to them cost more than the noise that they take away (docs/LIGHTS.md). */
 #define LARGEST 0.25
 
+/* Balls count as touching where the square of their distance is no larger than that of their radii by this. */
+#define TOUCHING (1 + 0x1p-8)
+
 /* No chain of a mirror has to do with its index, but the formulas want one above 1. */
 #define MIRROR_INDEX 2
 
@@ -96,13 +99,45 @@ bool bp_focuses_disc(const BpScene *scene, size_t sphere, size_t disc) {
     return is_focuser(scene, sphere) && caught_of_disc(&scene->discs[disc]) > 0;
 }
 
+/* It focuses one of the lamps or discs. */
+static bool has_target(const BpScene *scene, const Found *found, size_t focuser) {
+    if (found->disc_count > 0) return true;
+    for (size_t l = 0; l < found->lamp_count; ++l)
+        if (caught_of_lamp(scene, focuser, found->lamps[l]) > 0) return true;
+    return false;
+}
+
+/* What the second brings to the first, where `caught` is what it catches; 0 if they touch. The kernel says
+ * the same (pair_power in focusers.cl). */
+static double led_on(const BpScene *scene, size_t first, size_t second, double caught) {
+    const BpSphere *a = &scene->spheres[first], *b = &scene->spheres[second];
+    const double apart = distance(a->center, b->center), radii = fabs(a->radius) + fabs(b->radius);
+    return apart * apart > radii * radii * TOUCHING ? caught / (apart * apart) : 0;
+}
+
+bool bp_focuses_pair(const BpScene *scene, size_t first, size_t second) {
+    return is_focuser(scene, first) && is_focuser(scene, second) && led_on(scene, first, second, 1) > 0;
+}
+
+bool bp_focusers_pair(const BpScene *scene) {
+    Found found;
+    find_all(scene, &found);
+    if (found.focuser_count > BP_FOCUSERS_MAX || found.lamp_count > BP_FOCUSER_LAMPS_MAX) return false;
+    for (size_t a = 0; a < found.focuser_count; ++a)
+        for (size_t b = 0; b < found.focuser_count; ++b)
+            if (has_target(scene, &found, found.focusers[a]) && has_target(scene, &found, found.focusers[b]) &&
+                bp_focuses_pair(scene, found.focusers[a], found.focusers[b]))
+                return true;
+    return false;
+}
+
 bool bp_focusers_light_camera(const BpCamera *camera) {
     return camera->projection == BP_PERSPECTIVE && camera->pixel_sampling == BP_PIXEL_SQUARE;
 }
 
 uint32_t bp_focuser_vertices(const BpScene *scene, size_t sphere) {
     return is_mirror(scene, sphere)                                       ? 1
-           : bp_sphere_refraction_index(scene, sphere) > INSIDE_INDEX_MIN ? 3
+           : bp_sphere_refraction_index(scene, sphere) > INSIDE_INDEX_MIN ? 4
                                                                           : 2;
 }
 
@@ -164,16 +199,24 @@ static uint32_t slot_of(const BpTree *tree, size_t sphere) {
 
 /* How often each chain is tried, by its chords. Little light is reflected off glass, and less inside, but it
  * is spread widely, so it would be seen as noise if it were found too rarely. */
-static void set_chains(const BpMaterial *material, double index, double chains[3]) {
+static void set_chains(const BpMaterial *material, double index, double chains[4]) {
     if (material->kind == BP_MATERIAL_METAL) {
         chains[0] = 1;
     } else if (material->fresnel == BP_FRESNEL_NONE) {
         chains[1] = 1;
     } else {
         chains[2] = index > INSIDE_INDEX_MIN ? 0.125 : 0;
+        chains[3] = chains[2] / 2;
         chains[0] = 0.25;
-        chains[1] = 1 - chains[0] - chains[2];
+        chains[1] = 1 - chains[0] - chains[2] - chains[3];
     }
+}
+
+/* cos of what is left of half a turn beside the most that three chords turn by: 6 r - 2 i where 3 cos(i) is
+ * index times cos(r). */
+static double turn_left(double index) {
+    const double sine = sqrt(fmax(0, 9 - index * index) / 8);
+    return -cos(6 * asin(fmin(1, sine / index)) - 2 * asin(fmin(1, sine)));
 }
 
 /* The targets of a focuser, appended, and their shares of the light that it catches, which is returned. */
@@ -227,6 +270,7 @@ BpStatus bp_focusers_build(const BpScene *scene, const double origin[3], const B
     focusers->focuser_places = calloc(BP_FOCUSERS_MAX + 1, sizeof(PackedFocuserPlace));
     memset(table, 0, sizeof table);
     bool complete = targets != NULL && focusers->target_lamps != NULL && focusers->focuser_places != NULL;
+    size_t numbers[BP_FOCUSERS_MAX];
     uint32_t count = 0, target_count = 0;
     double brightest = 0;
     for (size_t f = 0; f < found.focuser_count && complete; ++f) {
@@ -243,14 +287,20 @@ BpStatus bp_focusers_build(const BpScene *scene, const double origin[3], const B
         focuser->power = caught * sphere->radius * sphere->radius;
         focuser->refraction_index = is_mirror(scene, i) ? MIRROR_INDEX : bp_sphere_refraction_index(scene, i);
         set_chains(material, focuser->refraction_index, focuser->chains);
+        focuser->turn = turn_left(focuser->refraction_index) + BEYOND;
         brightest = fmax(brightest, focuser->power);
         const uint32_t variant =
             is_mirror(scene, i) ? FOCUSER_MIRROR : bp_member_choice(material, BP_MEMBER_FRESNEL);
         const PackedFocuserPlace place = {slot_of(tree, i), variant, first, target_count - first};
         memcpy(focusers->focuser_places + FOCUSER_UINTS * count, &place, sizeof place);
+        numbers[count] = i;
         ++count;
     }
     for (uint32_t f = 0; f < count; ++f) table[f].power /= brightest; /* only shares matter */
+    for (uint32_t a = 0; a < count; ++a)
+        for (uint32_t b = 0; b < count; ++b)
+            table[a].pair_power += table[a].radius * table[a].radius *
+                                   led_on(scene, numbers[a], numbers[b], table[b].power);
     if (complete) {
         focusers->focuser_places[FOCUSER_UINTS * count + FOCUSER_SLOT] = NO_SLOT;
         focusers->focuser_count = count + 1;

@@ -7,12 +7,13 @@
  *
  * At equal time, noise falls if the variance of a sample falls by more than its time grows. Of the variance,
  * the pilot knows the part that is left to chance; to it come the rims of lights in the picture, and all the
- * rest is taken for ORDINARY of the squared brightness. Such rays are taken for TIMES as slow as none
- * (docs/UNSEEN.md has what was measured). Where light is by far too rare for samples to find, these guesses
+ * rest is taken for ORDINARY of the squared brightness. Such rays are taken for TIMES as slow as none, and
+ * those by way of two focusers too for TIMES_OF_PAIRS (docs/UNSEEN.md has what was measured). Where light is by far too rare for samples to find, these guesses
  * hardly matter. */
 #include "pilot_state.h"
 
 #include "base/color.h"
+#include "packed/focusers.h"
 #include "scene/vector.h"
 
 #include <math.h>
@@ -20,6 +21,7 @@
 #define PI 3.14159265358979323846
 #define ORDINARY 0.5
 #define TIMES 5.0
+#define TIMES_OF_PAIRS 8.0
 /* A disk of A pixels has 2 sqrt(pi A) 4 / pi pixels on its rim, of which it fills any part alike: the mean of
  * f (1 - f) is 1/6. */
 #define RIM 0.752
@@ -85,5 +87,6 @@ bool bp_pilot_focusing_pays(const BpPilot *pilot) {
     const double left = total(pilot->parts.chance.square, pixels) / (double)pixels;
     double rims;
     const double bright = brightness(pilot, &rims), rest = left + rims + ORDINARY * bright * bright;
-    return found + rest > TIMES * rest;
+    const double times = bp_focusers_pair(pilot->scene) ? TIMES_OF_PAIRS : TIMES;
+    return found + rest > times * rest;
 }

@@ -79,8 +79,8 @@ static double glint_extent(const BpScene *scene, const BpPilotLight *lights, siz
 }
 
 /* The rays that have come one way, and one light. */
-static void pass_group(const BpScene *scene, const BpPilotLight *lights, size_t light_count,
-                       const BpPilotLight *light, const BpPilotRay *rays, size_t count, BpPilotSums *sums) {
+static void pass_group(const BpScene *scene, bool focused, const BpPilotLight *lights, size_t light_count,
+                       const BpPilotLight *light, const BpPilotRay *rays, size_t count, BpPilotParts *parts) {
     Pass nearest[COUNT], pass;
     size_t most = count / GROUP, found = 0;
     if (most > COUNT) most = COUNT;
@@ -103,7 +103,9 @@ static void pass_group(const BpScene *scene, const BpPilotLight *lights, size_t 
         const double size2 = rays[0].lobe ? fmin(extent / PI, near2) : nearest[i].size2;
         if (size2 >= near2 && !rays[0].lobe) return; /* rays meet it often */
         for (int c = 0; c < 3; ++c) radiance[c] = glint * ray->carried[c] * light->radiance[c];
-        bp_pilot_add(sums, ray->pixel, radiance, ray->share * size2 / near2,
+        const bool is_found =
+            focused && bp_pilot_is_found(scene, light, &ray->met, scene->camera.lookfrom, ray->begins);
+        bp_pilot_add(is_found ? &parts->focused : &parts->chance, ray->pixel, radiance, ray->share * size2 / near2,
                      bp_pilot_way(scene, ray->through));
     }
 }
@@ -116,10 +118,7 @@ void bp_pilot_pass(const BpScene *scene, bool focused, const BpPilotLight *light
         const BpPilotRay *ray = &rays[first];
         for (size_t l = 0; l < light_count; ++l) {
             if (lights[l].share > 1) continue;
-            const bool found = focused && ray->vertices > 0 &&
-                               bp_pilot_is_sampled(scene, &lights[l], ray->through, ray->vertices);
-            pass_group(scene, lights, light_count, &lights[l], ray, end - first,
-                       found ? &parts->focused : &parts->chance);
+            pass_group(scene, focused, lights, light_count, &lights[l], ray, end - first, parts);
         }
     }
 }

@@ -17,6 +17,7 @@
 #include "pilot_join.h"
 #include "pilot_lights.h"
 #include "pilot_lobes.h"
+#include "pilot_pairs.h"
 
 /* A ray, and where it ends. */
 typedef struct BpPilotRay {
@@ -25,8 +26,9 @@ typedef struct BpPilotRay {
     double share;                           /* of the pixel's samples that it stands for */
     uint64_t way;                           /* the same for rays that have come the same way */
     uint32_t pixel, shape;                  /* that it meets, or NO_SPHERE */
-    uint32_t through;                       /* the first that it has met */
-    uint32_t vertices;                      /* of its path, all on `through`; 0: on other shapes too */
+    uint32_t through;                       /* the first that its path has met */
+    BpPilotMet met;                         /* by its path; none: a narrow lobe too */
+    double begins[3];                       /* the direction of its path at the camera */
     uint32_t number;                        /* none has another's */
     bool lobe;                              /* it begins in a narrow lobe, around this direction */
     BpPilotTurn turn;                       /* there */

@@ -5,6 +5,7 @@
  * Knows: what surfaces do to beams of light, and to paths that come the other way.
  * Does not know: where the camera stands. */
 #include "pilot_lobes.h"
+#include "pilot_pairs.h"
 #include "pilot_shapes.h"
 #include "pilot_state.h"
 
@@ -85,6 +86,16 @@ static double glints(const BpPilot *pilot, const BpPilotLight *light, const BpPi
     return part;
 }
 
+/* Whether rays to lamps find the light that has come so to a rough point. */
+static bool is_focused(const BpScene *scene, const BpPilotLight *light, BpPilotMet met,
+                       const BpPilotSegment *segment) {
+    double back[3];
+    for (int a = 0; a < 3; ++a) back[a] = -segment->direction[a];
+    bp_normalize(back);
+    bp_pilot_met_turn_round(&met);
+    return bp_pilot_is_found(scene, light, &met, segment->point, back);
+}
+
 /* One path from a light, which counts where it comes to rough points. */
 static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t path,
                           const BpPilotStart *start) {
@@ -93,9 +104,9 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
     const BpPilotLight *light = &pilot->aim->lights[pair->light];
     const uint32_t target = pilot->aim->targets[pair->target];
     double measure = start->measure;
-    uint32_t deposits = 0, vertices = 0; /* specular, up to the first rough point */
-    bool aimed = false, alone = true;    /* all of them are the target's */
-    bool focused = false;
+    uint32_t deposits = 0;
+    BpPilotMet met = {0}; /* up to the first rough point */
+    bool aimed = false, focused = false;
     double part = 1; /* of the light's radiance */
     BpPilotSegment segment, next;
     for (uint32_t s = 0; bp_pilot_segment(flight, path, BP_PILOT_SEGMENTS_MAX, s, &segment) && measure > 0;
@@ -105,17 +116,14 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
         if (!aimed && segment.shape != target) return;
         const bool rough = bp_pilot_is_rough(scene, &segment), lobe = rough && !aimed;
         aimed = true;
-        if (!rough && deposits == 0) {
-            ++vertices;
-            alone = alone && segment.shape == target;
-        }
+        if (!rough && deposits == 0) bp_pilot_meet(&met, segment.shape);
         if (lobe) {
-            alone = false;
+            met.others = true;
             if (!bp_pilot_segment(flight, path, BP_PILOT_SEGMENTS_MAX, s + 1, &next)) return;
             part = glints(pilot, light, &segment, &next, &measure);
             continue;
         }
-        if (rough && deposits == 0) focused = alone && bp_pilot_is_sampled(scene, light, target, vertices);
+        if (rough && deposits == 0) focused = is_focused(scene, light, met, &segment);
         if (rough) {
             BpPilotPhoton *photon = &pilot->photons[pilot->photon_count++];
             double carried[3];

@@ -111,6 +111,8 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
     bp_effects_analyse(scene, &effects);
     setup->program.effects = choose_effects(&effects, options);
     setup->program.tree = choose_tree(scene, options);
+    setup->program.focuser_pairs =
+        effects.focuser_pairs && bp_effects_has(setup->program.effects, BP_EFFECT_CAUSTICS);
     setup->program.triangles_alone = effects.triangles_alone && !needs_spheres(setup->program.effects);
 #define SETTING(type, member, option, plural) setup->program.member = options->member;
     BP_SETTING_LIST(SETTING)

@@ -11,6 +11,7 @@
  *   SAMPLES_PER_ITEM  pixel samples that it traces in all
  *   GROUP_MAX         work-items in a work-group of the sample form, at most
  *   EFFECT_...        0 or 1, one for each effect
+ *   FOCUSER_PAIRS     0 or 1: light may come by way of two balls of glass or mirrors in turn
  *   TRIANGLES_ALONE   0 or 1: there are no spheres, no media, and no part of the sky that rays are sent to
  *   ACCELERATION_TREE 0 or 1: spheres are found through a tree, or are a list
  *
@@ -87,6 +88,8 @@ typedef REFINED refined;
 #define SAMPLES_LAMPS (SAMPLES_LAMP_TREE || SAMPLES_SKY)
 /* Light that such lamps send through balls of glass and off mirrors is sampled too. */
 #define SAMPLES_CAUSTICS (EFFECT_CAUSTICS && (SAMPLES_LAMP_TREE || SAMPLES_DISCS) && (EFFECT_METAL || EFFECT_DIELECTRIC))
+/* And what two of them lead on, one after the other. */
+#define SAMPLES_PAIRS (SAMPLES_CAUSTICS && FOCUSER_PAIRS)
 /* Some lobes depend on the direction that light leaves in, and not on the angle to an axis alone. */
 #define LOBES_OF_TWO_DIRECTIONS (EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL || EFFECT_GLOSSY || EFFECT_ROUGH_DIELECTRIC)
 /* The weight of some lobes depends on the direction that they draw, so rays to lamps have weights of their own. */

@@ -55,6 +55,12 @@ typedef struct Path {
     vuint chain; /* that it follows from a vertex through a focuser, or CHAIN_NONE */
     Focus focus; /* of that chain */
 #endif
+#if SAMPLES_PAIRS
+    vuint second;        /* of a chain through two focusers: the second one */
+    vuint first_chords;  /* inside the first one */
+    Vec3 chain_begins;   /* the direction from the vertex */
+    vreal pair_density;  /* of that, over the probability of choosing the focusers */
+#endif
 } Path;
 
 /* When the path is, from 0 where the shutter opens to 1: where nothing moves, always 0. */

@@ -24,14 +24,15 @@
  * pieces with a root at most: the rise and the fall at beta, and the fall at -beta. From the outer end of its piece,
  * Newton's method comes closer to the root with every step, without passing it, and says by the sign of the slope that
  * there is none. W need not be known, but only sin(W - beta) and cos(W - beta), so there is no arc sine; within a piece
- * the difference is less than half a turn, if 4 asin(1 / index) is (the host leaves out other chains).
+ * the difference is less than half a turn, if 4 asin(1 / index) is (the host leaves out other chains). Three chords turn by more, so
+ * they are sought only where W stays below half a turn for every point of the target (is_sought).
  *
  * A direction that follows from a point of the target has a density with a pole where two chains merge (a fold) and where the
  * target stands behind the middle of the ball and is seen as a ring: there a few samples in a million would carry much of the
  * light, and pictures would be noisier than their samples know. So a direction is drawn from around the image of the whole
  * target there, whose extent follows from the roots for its edges (image_of). */
 #if SAMPLES_CAUSTICS
-#define CHORDS_MAX 2u
+#define CHORDS_MAX 3u
 #define STEPS_MAX 32u
 #if REAL_IS_DOUBLE
 #define CLOSE_STEP 0x1p-26
@@ -40,8 +41,8 @@
 #endif
 #define CHAIN_RATIO_MAX R(1e15) /* as in lamps_direct.cl */
 
-/* What a focuser may bring to a lobe at a point: `power` is the light that it catches, per steradian as it were. */
-static vreal focuser_importance(__global const real *focuser, const Point *point, const Lobe *lobe) {
+/* What a focuser may bring to a lobe at a point. `power`: the place of the light that it leads on, per steradian as it were. */
+static vreal focuser_importance(__global const real *focuser, uint power, const Point *point, const Lobe *lobe) {
     const Vec3 to_centre = subtract3(splat3(focuser + FOCUSER_CENTRE), point->high);
     const vreal radius = splat(focuser[FOCUSER_RADIUS]);
     const vreal distance2 = at_least(dot3(to_centre, to_centre), splat(R(1e-30)));
@@ -50,11 +51,13 @@ static vreal focuser_importance(__global const real *focuser, const Point *point
     const vreal sine = at_most(radius * inverse, splat(1));
     const vreal cosine = cone_cosine(lobe, z, sine);
     const vbool outside = distance2 > radius * radius * R(0x1.0001p0);
-    return choose(outside, focuser[FOCUSER_POWER] * cosine * inverse * inverse, splat(0));
+    return choose(outside, focuser[power] * cosine * inverse * inverse, splat(0));
 }
 
-/* What the chain of a path is: how many chords it has passed inside the ball, and more than that when it has left the ball. */
+/* What the chain of a path is: how many chords it has passed inside the ball, and more than that when it has left the ball, or
+ * gone on to a second one. */
 #define CHAIN_LEFT 8u
+#define CHAIN_SECOND 16u
 #define CHAIN_NONE 0xffu
 
 /* The way from a vertex to a focuser. */
@@ -77,15 +80,15 @@ static vbool is_focuser(const Scene *scene, vuint slot) {
 
 /* The focuser that each lane chooses by a number in [0, 1), and its probability; or, where `slots` is given, the one in
  * the lane's slot. Probability 0: there is none. */
-static vreal choose_focuser(const Scene *scene, const Point *point, const Lobe *lobe, vreal number, const vuint *slots,
-                            vuint *chosen_number) {
+static vreal choose_focuser(const Scene *scene, uint power, const Point *point, const Lobe *lobe, vreal number,
+                            const vuint *slots, vuint *chosen_number) {
     vreal sum = splat(0), chosen = splat(0), below = splat(0);
     for (uint i = 0; scene->focuser_places[i * FOCUSER_UINTS] != NO_SLOT; ++i)
-        sum += focuser_importance(scene->focusers + i * FOCUSER_REALS, point, lobe);
+        sum += focuser_importance(scene->focusers + i * FOCUSER_REALS, power, point, lobe);
     const vreal target = number * sum;
     *chosen_number = splat_uint(0);
     for (uint i = 0; scene->focuser_places[i * FOCUSER_UINTS] != NO_SLOT; ++i) {
-        const vreal importance = focuser_importance(scene->focusers + i * FOCUSER_REALS, point, lobe);
+        const vreal importance = focuser_importance(scene->focusers + i * FOCUSER_REALS, power, point, lobe);
         vbool taken = (below <= target) & (importance > splat(0));
         if (slots != 0) taken = vbool_of_uint(*slots == splat_uint(scene->focuser_places[i * FOCUSER_UINTS]));
         *chosen_number = choose_uint(taken, splat_uint(i), *chosen_number);
@@ -101,10 +104,39 @@ static Vec3 focuser_centre(const Scene *scene, vuint number) {
                 gather_real(scene->focusers + 2u, place));
 }
 
+#if SAMPLES_PAIRS
+/* What focuser `i` brings of its light to one other, as that one's FOCUSER_PAIR_POWER counts it; 0 to itself and to what it touches. */
+static vreal pair_power(const Scene *scene, uint i, Vec3 centre, vreal radius) {
+    __global const real *focuser = scene->focusers + i * FOCUSER_REALS;
+    const Vec3 between = subtract3(splat3(focuser + FOCUSER_CENTRE), centre);
+    const vreal apart = radius + focuser[FOCUSER_RADIUS], distance2 = dot3(between, between);
+    const vbool beyond = distance2 > apart * apart * R(0x1.01p0);
+    return choose(beyond, divide(splat(focuser[FOCUSER_POWER]), choose(beyond, distance2, splat(1))), splat(0));
+}
+#endif
+
 static Vec3 target_centre(const Scene *scene, vuint target) {
     const vuint place = target * TARGET_REALS + TARGET_CENTRE;
     return vec3(gather_real(scene->targets, place), gather_real(scene->targets + 1u, place),
                 gather_real(scene->targets + 2u, place));
+}
+
+/* The target of a focuser that is the lamp, in the lanes `wanted`. Returns those that have one. */
+static vbool find_target(const Scene *scene, vuint number, vuint lamp, vbool wanted, vuint *target) {
+    const vuint place = number * FOCUSER_UINTS;
+    const vuint first = gather_uint(scene->focuser_places + FOCUSER_FIRST, place);
+    const vuint count = gather_uint(scene->focuser_places + FOCUSER_COUNT, place);
+    vbool known = vbool_none;
+    *target = first;
+    for (uint k = 0;; ++k) {
+        const vbool has = wanted & vbool_of_uint(splat_uint(k) < count);
+        if (!any_lane(has)) break;
+        const vuint tried = choose_uint(has, first + splat_uint(k), first);
+        const vbool same = has & vbool_of_uint(gather_uint(scene->target_lamps, tried) == lamp);
+        *target = choose_uint(same, tried, *target);
+        known = known | same;
+    }
+    return known;
 }
 
 static vreal cosine_of(vreal sine) { return square_root(at_least((splat(1) - sine) * (splat(1) + sine), splat(0))); }
@@ -150,6 +182,11 @@ static Focus focus_along(const Scene *scene, const Point *point, const Lobe *lob
     focus.sine = at_least(at_most(sine, splat(R(1.0) - R(0x1p-22))), splat(R(0x1p-40)));
     focus.ratio = divide(vertex_pdf(scene, lobe, direction, drawn), choose(probability > splat(0), probability, splat(1)));
     return focus;
+}
+
+/* Some vector across a unit one: straight ahead or behind, any direction across the axis is as good as another. */
+static Vec3 beside(Vec3 axis) {
+    return choose3(fabs(axis.x) < splat(R(0.5)), vec3(splat(0), axis.z, -axis.y), vec3(-axis.z, splat(0), axis.x));
 }
 
 /* A number of the complex plane, and products by the rules for them: angles add up. */
@@ -198,9 +235,9 @@ static Turn chain_turn(vreal sine, vreal cosine, vreal near, vreal far, vreal in
 }
 
 /* The root of one piece: the rise, or the fall, at an angle whose cosine and sine are given. Returns the lanes of `active`
- * that have one. */
-static vbool chain_root(vreal near, vreal far, vreal inverse_index, vuint inside, vreal cosine_target, vreal sine_target,
-                        int rising, vbool active, vreal *sine_found, vreal *cosine_found) {
+ * that have one. `steps_max`, `close_step`: after so many steps, or one that is as short, it is close enough. */
+static vbool chain_root_within(vreal near, vreal far, vreal inverse_index, vuint inside, vreal cosine_target, vreal sine_target,
+                               int rising, uint steps_max, real close_step, vbool active, vreal *sine_found, vreal *cosine_found) {
     const vreal chords = splat(2) * uint_to_real(inside) * inverse_index;
     Turn target, at;
     target.cosine = cosine_target;
@@ -208,7 +245,7 @@ static vbool chain_root(vreal near, vreal far, vreal inverse_index, vuint inside
     at.cosine = splat(rising ? R(1.0) : R(0.0));
     at.sine = splat(rising ? R(0.0) : R(1.0));
     vbool searching = active, found = vbool_none;
-    for (uint step = 0; step < STEPS_MAX && any_lane(searching); ++step) {
+    for (uint step = 0; step < steps_max && any_lane(searching); ++step) {
         Turn from, to;
         vreal refracted;
         const Turn off = turn_back(chain_turn(at.sine, at.cosine, near, far, inverse_index, inside, &from, &to, &refracted), target);
@@ -232,7 +269,7 @@ static vbool chain_root(vreal near, vreal far, vreal inverse_index, vuint inside
         const Turn next = turn_on(at, by);
         const vbool arrived = here | (vbool_not(before) & vbool_not(beyond));
         /* What the step leaves of the difference is of the order of its square. */
-        const vbool close = fabs(tangent) < splat(CLOSE_STEP);
+        const vbool close = fabs(tangent) < splat(close_step);
         const vbool moves = searching & vbool_not(arrived) & vbool_not(lost);
         found = found | (searching & vbool_not(lost) & (arrived | close));
         at.cosine = choose(moves, next.cosine, at.cosine);
@@ -240,7 +277,7 @@ static vbool chain_root(vreal near, vreal far, vreal inverse_index, vuint inside
         const vbool left = (at.sine < splat(0)) | (at.cosine < splat(0));
         searching = moves & vbool_not(close) & vbool_not(left);
         /* What has not arrived after so many steps is as close to the maximum as rounding lets it come. */
-        if (step == STEPS_MAX - 1u) found = found | searching;
+        if (step == steps_max - 1u) found = found | searching;
     }
     const vreal length = fma(at.sine, at.sine, at.cosine * at.cosine);
     const vreal shorten = fma(length, splat(R(-0.5)), splat(R(1.5)));
@@ -249,16 +286,59 @@ static vbool chain_root(vreal near, vreal far, vreal inverse_index, vuint inside
     return found & active & (at.sine >= splat(0)) & (at.cosine >= splat(0));
 }
 
+/* The same, as close as rounding allows. */
+static vbool chain_root(vreal near, vreal far, vreal inverse_index, vuint inside, vreal cosine_target, vreal sine_target,
+                        int rising, vbool active, vreal *sine_found, vreal *cosine_found) {
+    return chain_root_within(near, far, inverse_index, inside, cosine_target, sine_target, rising, STEPS_MAX, CLOSE_STEP, active,
+                             sine_found, cosine_found);
+}
+
+/* An odd number of chords: where the chain turns by nothing, it goes straight on. */
+static vbool is_straight(vuint inside) { return vbool_of_uint((inside & splat_uint(1)) == splat_uint(1)); }
+
+/* The plane in which a chain lies, and where in it the target is. */
+typedef struct ChainPlane {
+    Vec3 axis, across;   /* unit: from the vertex to the centre, and from there aside to the target */
+    vreal near, far;     /* the radius over the distances of vertex and target */
+    vreal sine;          /* of the angle between axis and target */
+    vreal target_cosine; /* of the angle to be turned */
+    vbool straight;      /* an odd number of chords */
+    vbool rises;         /* only a chain that begins to rise has a maximum above 0 */
+} ChainPlane;
+
+/* `aim`: the unit direction from the centre to the target. */
+static ChainPlane chain_plane(Vec3 axis, Vec3 aim, vreal near, vreal far, vuint inside, vreal inverse_index) {
+    ChainPlane plane;
+    const vreal cosine = dot3(axis, aim);
+    const Vec3 off = madd3(-cosine, axis, aim);
+    plane.axis = axis;
+    plane.near = near;
+    plane.far = far;
+    plane.sine = square_root(dot3(off, off));
+    plane.across = normalise3(choose3(plane.sine > splat(0), off, beside(axis)));
+    plane.straight = is_straight(inside);
+    plane.target_cosine = choose(plane.straight, cosine, -cosine);
+    plane.rises = near + far + splat(2) * uint_to_real(inside) * inverse_index > splat(2);
+    return plane;
+}
+
+/* The direction from the vertex with this sine of incidence, to one side. */
+static Vec3 plane_direction(const ChainPlane *plane, vreal side, vreal sine) {
+    const vreal aside = sine * plane->near;
+    const vreal turned = choose(plane->straight, side, -side) * aside;
+    return normalise3(madd3(cosine_of(aside), plane->axis, scale3(turned, plane->across)));
+}
+
 /* The probability with which a path that meets the focuser at this angle takes the chain: of reflection and refraction as
  * dielectric.cl chooses between them. */
-static vreal chain_probability(const Scene *scene, const Focus *focus, vuint inside) {
+static vreal chain_probability(const Scene *scene, vuint number, vreal sine, vuint inside) {
     vreal outer = splat(1), inner = splat(0);
 #if EFFECT_DIELECTRIC
-    const vuint variant = gather_uint(scene->focuser_places, focus->number * FOCUSER_UINTS + FOCUSER_VARIANT);
+    const vuint variant = gather_uint(scene->focuser_places, number * FOCUSER_UINTS + FOCUSER_VARIANT);
     const vbool glass = vbool_of_uint(variant != splat_uint(FOCUSER_MIRROR));
-    const vreal n = gather_real(scene->focusers, focus->number * FOCUSER_REALS + FOCUSER_INDEX);
+    const vreal n = gather_real(scene->focusers, number * FOCUSER_REALS + FOCUSER_INDEX);
     const vreal inverse = divide(splat(1), n);
-    const vreal c = cosine_of(focus->sine), t = cosine_of(focus->sine * inverse);
+    const vreal c = cosine_of(sine), t = cosine_of(sine * inverse);
     const vbool exact = vbool_of_uint(variant == splat_uint(FRESNEL_EXACT));
     const vbool none = vbool_of_uint(variant == splat_uint(FRESNEL_NONE));
     vreal first = choose(exact, fresnel_exact(c, n, t), fresnel_schlick(c, inverse));
@@ -268,8 +348,17 @@ static vreal chain_probability(const Scene *scene, const Focus *focus, vuint ins
     outer = choose(glass, first, outer);
 #endif
     const vreal through = (splat(1) - outer) * (splat(1) - inner);
-    return choose(vbool_of_uint(inside == splat_uint(0)), outer,
-                  choose(vbool_of_uint(inside == splat_uint(1)), through, through * inner));
+    vreal reflected = splat(1);
+    for (uint k = 1; k < CHORDS_MAX; ++k) reflected *= choose(vbool_of_uint(inside > splat_uint(k)), inner, splat(1));
+    return choose(vbool_of_uint(inside == splat_uint(0)), outer, through * reflected);
+}
+
+/* The lanes in which a chain of so many chords is sought. `near` and `far`: the radius over the distances of vertex and target; the asin of both
+ * together, and what refraction adds at most, must be less than half a turn. */
+static vbool is_sought(const Scene *scene, vuint number, vuint inside, vreal near, vreal far) {
+    const vreal most = gather_real(scene->focusers, number * FOCUSER_REALS + FOCUSER_TURN);
+    const Turn both = turn_on(turn_by_sine(at_most(near, splat(1))), turn_by_sine(at_most(far, splat(1))));
+    return vbool_of_uint(inside < splat_uint(CHORDS_MAX)) | (both.cosine > most);
 }
 
 /* How a target lies, seen from the centre of a focuser, and the radius of the focuser over the distances of its points. */
@@ -339,7 +428,7 @@ static TargetImage image_of(const Scene *scene, vuint number, Vec3 axis, vreal d
     if (!any_lane(active)) return image;
     Turn beta;
     beta.cosine = dot3(axis, cone.axis);
-    beta.cosine = choose(vbool_of_uint(inside == splat_uint(1)), beta.cosine, -beta.cosine);
+    beta.cosine = choose(is_straight(inside), beta.cosine, -beta.cosine);
     beta.sine = across_axis(axis, cone.axis, &image.across);
     const vbool ring = active & (beta.sine < cone.spread.sine) & (beta.cosine > splat(0));
     const Turn low = turn_back(beta, cone.spread), high = turn_on(beta, cone.spread);
@@ -455,8 +544,9 @@ static vreal chain_ratio(const Scene *scene, const Focus *focus, const TargetIma
     const vbool banded = image->ring | (image->fold & (turn.sine > splat(0)));
     if (any_lane(banded))
         directed = choose(banded, band_density(focus, image, near, choose3(far, direction, crossing)), directed);
-    const vreal density = share * gather_real(scene->targets, aim + TARGET_SHARE) * directed;
-    const vreal ratio = divide(focus->ratio * chain_probability(scene, focus, inside), choose(density > splat(0), density, splat(1)));
+    vreal density = share * gather_real(scene->targets, aim + TARGET_SHARE) * directed;
+    density = choose(is_sought(scene, focus->number, inside, near, target_cone(scene, focus->number, target).largest), density, splat(0));
+    const vreal ratio = divide(focus->ratio * chain_probability(scene, focus->number, focus->sine, inside), choose(density > splat(0), density, splat(1)));
     return choose(density > splat(0), at_most(ratio, splat(CHAIN_RATIO_MAX)), splat(CHAIN_RATIO_MAX));
 }
 #endif
