@@ -13,7 +13,7 @@ import sys
 from program_cases import picture, run_cases
 
 SCENES = os.path.join(sys.argv[2], "tests/agree/scenes")
-NAMES = ("caustics-glass", "caustics-inside", "caustics-mirror", "caustics-sun")
+NAMES = ("caustics-glass", "caustics-inside", "caustics-mirror", "caustics-pair", "caustics-sun")
 SIZE = ("--width", "24", "--spp", "6")
 
 

@@ -190,7 +190,7 @@ class CausticSampling(Check):
 
     def test_a_wrong_chain(self):
         """A fault of these rays alone is found, and the verdicts say where."""
-        fault = cli.broken_kernels(self, "integrator/caustics.cl", "scale3(share, radiance)", "scale3(splat(2) * share, radiance)")
+        fault = cli.broken_kernels(self, "integrator/chain_trace.cl", "scale3(share, radiance)", "scale3(splat(2) * share, radiance)")
         self.run_code(3, *self.WORDS[:4], "--width", "32", "--spp", "1024", "--margin", "50", "--json", "r.json", environment=fault,
                       says="disagree in 1 of 3 checks")
         self.assertEqual([verdict for *_, verdict in self.sampling()], ["agree", "agree", "disagree"])
@@ -209,7 +209,7 @@ class Suite(Check):
         sampled = [check["scene"] for check in checks if (check["light_sampling"], check["caustics"]) == ("on", "off")]
         self.assertEqual([check["scene"] for check in checks if check["light_sampling"] == "off"], SCENES)
         led = [check["scene"] for check in checks if check["caustics"] == "on"]
-        self.assertEqual(led, [f"caustics-{name}" for name in ("glass", "inside", "mirror", "rough", "sun")] + ["crowd", "discs"])
+        self.assertEqual(led, [f"caustics-{name}" for name in ("glass", "inside", "mirror", "pair", "rough", "sun")] + ["crowd", "discs"])
         self.assertLessEqual({"lamp", "discs", "environment-sun", "media-lamp", "motion-lamp", "shadow-catcher"}, set(sampled))
         self.assertNotIn("lobe-lambertian", sampled)
         self.assertEqual(len(sampled), len(set(sampled)))
