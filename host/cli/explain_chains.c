@@ -106,8 +106,7 @@ void bp_chain_light_clear(BpChainLight *light) {
 /* ---- for a person ---- */
 
 static void print_way(const BpScene *scene, const BpChain *chain, const BpChainWay *way, FILE *out) {
-    static const char *const hows[] = {"off", "through", "reflected inside",
-                                       "reflected twice inside"};
+    static const char *const hows[] = {"off", "through", "reflected inside", "reflected twice inside"};
     char share[32];
     fprintf(out, "       %s %" PRIu32 " %s sphere %" PRIu32 " (", chain->disc ? "disc" : "lamp", chain->lamp,
             hows[chain->chords], chain->sphere);

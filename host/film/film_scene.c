@@ -110,7 +110,8 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLight
     const double paired = caustics == BP_CAUSTICS_ON && bp_focusers_pair(scene) ? 4 * 0.5 : 0;
     if (light_sampling != BP_LIGHT_SAMPLING_OFF && max_depth >= 2)
         bound += weight * brightest_lamp *
-                 ((0.5 + focused + paired) * scattered * geometric(scattered, max_depth - 1, deep) + 4 * focused + paired);
+                 ((0.5 + focused + paired) * scattered * geometric(scattered, max_depth - 1, deep) +
+                  4 * focused + paired);
     if (scene->backdrop != BP_BACKDROP_COLORS) return bound;
     return fmax(bound, fmax(largest(scene->backdrop_bottom), largest(scene->backdrop_top)));
 }

@@ -47,7 +47,7 @@ BpStatus bp_kernel_close(FILE *out, BpStatus status, char **text, BpError *err);
 typedef struct BpProgramOptions {
     uint32_t effects;     /* bits of effects.h */
     bool tree;            /* spheres are found through a tree; else they are a list */
-    bool focuser_pairs; /* code for light that comes by way of two focusers, if it has any for one */
+    bool focuser_pairs;   /* code for light that comes by way of two focusers, if it has any for one */
     bool triangles_alone; /* no code for spheres: there are none, no lamps to send rays to and no media */
     BP_SETTING_LIST(BP_SETTING_MEMBER)
     BpKernelForm form;     /* not BP_KERNEL_AUTO */

@@ -28,7 +28,8 @@
  * samples that rays to them cost more than the noise that they take away (docs/LIGHTS.md). */
 #define LARGEST 0.25
 
-/* Balls count as touching where the square of their distance is no larger than that of their radii by this. */
+/* Balls count as touching where the square of their distance is no larger than that of their radii by this.
+ */
 #define TOUCHING (1 + 0x1p-8)
 
 /* No chain of a mirror has to do with its index, but the formulas want one above 1. */
@@ -125,7 +126,8 @@ bool bp_focusers_pair(const BpScene *scene) {
     if (found.focuser_count > BP_FOCUSERS_MAX || found.lamp_count > BP_FOCUSER_LAMPS_MAX) return false;
     for (size_t a = 0; a < found.focuser_count; ++a)
         for (size_t b = 0; b < found.focuser_count; ++b)
-            if (has_target(scene, &found, found.focusers[a]) && has_target(scene, &found, found.focusers[b]) &&
+            if (has_target(scene, &found, found.focusers[a]) &&
+                has_target(scene, &found, found.focusers[b]) &&
                 bp_focuses_pair(scene, found.focusers[a], found.focusers[b]))
                 return true;
     return false;
@@ -299,8 +301,8 @@ BpStatus bp_focusers_build(const BpScene *scene, const double origin[3], const B
     for (uint32_t f = 0; f < count; ++f) table[f].power /= brightest; /* only shares matter */
     for (uint32_t a = 0; a < count; ++a)
         for (uint32_t b = 0; b < count; ++b)
-            table[a].pair_power += table[a].radius * table[a].radius *
-                                   led_on(scene, numbers[a], numbers[b], table[b].power);
+            table[a].pair_power +=
+                table[a].radius * table[a].radius * led_on(scene, numbers[a], numbers[b], table[b].power);
     if (complete) {
         focusers->focuser_places[FOCUSER_UINTS * count + FOCUSER_SLOT] = NO_SLOT;
         focusers->focuser_count = count + 1;

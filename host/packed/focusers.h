@@ -34,11 +34,12 @@ bool bp_focusers_explain(const BpScene *scene, size_t size, char *reason);
  * through focusers. */
 bool bp_focuses_lamp(const BpScene *scene, size_t sphere, size_t lamp);
 bool bp_focuses_disc(const BpScene *scene, size_t sphere, size_t disc);
-/* Whether chains are sought via one sphere and then a second one, where both focus a lamp or a disc; and whether
- * there are two such spheres. */
+/* Whether chains are sought via one sphere and then a second one, where both focus a lamp or a disc; and
+ * whether there are two such spheres. */
 bool bp_focuses_pair(const BpScene *scene, size_t first, size_t second);
 bool bp_focusers_pair(const BpScene *scene);
-/* Whether chains via one sphere are sought from the camera too, which needs a density of directions through a pixel. */
+/* Whether chains via one sphere are sought from the camera too, which needs a density of directions through a
+ * pixel. */
 bool bp_focusers_light_camera(const BpCamera *camera);
 /* The most spheres' surfaces that such a chain meets at the focuser: 1 for a reflection. */
 uint32_t bp_focuser_vertices(const BpScene *scene, size_t sphere);

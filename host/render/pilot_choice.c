@@ -8,8 +8,8 @@
  * At equal time, noise falls if the variance of a sample falls by more than its time grows. Of the variance,
  * the pilot knows the part that is left to chance; to it come the rims of lights in the picture, and all the
  * rest is taken for ORDINARY of the squared brightness. Such rays are taken for TIMES as slow as none, and
- * those by way of two focusers too for TIMES_OF_PAIRS (docs/UNSEEN.md has what was measured). Where light is by far too rare for samples to find, these guesses
- * hardly matter. */
+ * those by way of two focusers too for TIMES_OF_PAIRS (docs/UNSEEN.md has what was measured). Where light is
+ * by far too rare for samples to find, these guesses hardly matter. */
 #include "pilot_state.h"
 
 #include "base/color.h"

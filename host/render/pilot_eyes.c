@@ -91,7 +91,8 @@ static void pass_directly(BpPilot *pilot, const BpPilotSegment *segment, size_t 
 }
 
 static void keep_ray(BpPilot *pilot, const BpPilotSegment *segment, const double carried[3], double odds,
-                     uint32_t s, size_t square, uint32_t through, const BpPilotMet *met_before, uint64_t way) {
+                     uint32_t s, size_t square, uint32_t through, const BpPilotMet *met_before,
+                     uint64_t way) {
     const bool met = (segment->flags & PILOT_MET) != 0;
     if (s + 1 > pilot->max_depth || pilot->ray_count == pilot->ray_room) return;
     BpPilotRay *ray = &pilot->rays[pilot->ray_count];

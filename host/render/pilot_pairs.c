@@ -28,7 +28,7 @@ typedef struct Search {
     Ball balls[2];
     double to_first[3], between[3];
     double to_light[3]; /* from the centre of the second, or the direction to it */
-    double size; /* of the light, in radians */
+    double size;        /* of the light, in radians */
     bool distant;
 } Search;
 
@@ -115,8 +115,7 @@ static bool end_of(const Search *search, const Beam *beam, double end[3]) {
     if (search->distant) return true;
     const double along = bp_dot(beam->direction, search->to_light);
     if (!(along > 0)) return false;
-    const double length =
-        bp_dot(search->to_light, search->to_light) - bp_dot(beam->origin, search->to_light);
+    const double length = bp_dot(search->to_light, search->to_light) - bp_dot(beam->origin, search->to_light);
     add_scaled(length / along, beam->direction, end);
     return true;
 }
@@ -169,8 +168,8 @@ static bool turn_to_end(const Search *search, const double end[3], double near, 
     return false;
 }
 
-/* By how far a chain through the first ball has turned about its centre at an angle of incidence, in excess of
- * `wanted` (W in kernels/light/focusers.cl). */
+/* By how far a chain through the first ball has turned about its centre at an angle of incidence, in excess
+ * of `wanted` (W in kernels/light/focusers.cl). */
 static double turned(const Ball *ball, double near, double far, double incidence, double wanted) {
     const double b = sin(incidence);
     return asin(fmin(1, b * near)) + asin(fmin(1, b * far)) - 2 * incidence +
@@ -178,7 +177,8 @@ static double turned(const Ball *ball, double near, double far, double incidence
 }
 
 /* The first angle of incidence from `from` on at which the chain has turned so; on a rise, or on a fall. */
-static bool root_of(const Ball *ball, double near, double far, double wanted, bool rising, double *incidence) {
+static bool root_of(const Ball *ball, double near, double far, double wanted, bool rising,
+                    double *incidence) {
     double last = turned(ball, near, far, 0, wanted);
     for (int k = 1; k <= ANGLES; ++k) {
         const double next = turned(ball, near, far, PI / 2 * k / ANGLES, wanted);
@@ -292,8 +292,8 @@ static bool comes_to(const Search *search, const double end[3], const double wan
 }
 
 /* Of two spheres, from the point on. */
-static bool finds(const BpScene *scene, const BpPilotLight *light, const BpPilotMet *met, const double point[3],
-                  const double direction[3]) {
+static bool finds(const BpScene *scene, const BpPilotLight *light, const BpPilotMet *met,
+                  const double point[3], const double direction[3]) {
     Search search = {.distant = light->distant};
     const BpSphere *spheres[2];
     Beam beam;

@@ -5,8 +5,8 @@
  * Knows: how kernels look for chains (kernels/light/focusers.cl, focuser_pairs.cl).   Does not know: shadows.
  *
  * Through one ball kernels find every chain. Through two they find some and leave the others to chance: those
- * that Newton's method does not come to from where it begins. Here the same is done in double, so the answer is
- * the same for all devices, and another than theirs for few chains only. */
+ * that Newton's method does not come to from where it begins. Here the same is done in double, so the answer
+ * is the same for all devices, and another than theirs for few chains only. */
 #ifndef BP_RENDER_PILOT_PAIRS_H
 #define BP_RENDER_PILOT_PAIRS_H
 
@@ -22,8 +22,8 @@ typedef struct BpPilotMet {
 void bp_pilot_meet(BpPilotMet *met, uint32_t shape);
 void bp_pilot_met_turn_round(BpPilotMet *met);
 
-/* Whether rays to the light, from `point` through focusers, find the chain that begins along `direction`, a unit
- * vector, and meets these; it need not end at the light, but near it. */
+/* Whether rays to the light, from `point` through focusers, find the chain that begins along `direction`, a
+ * unit vector, and meets these; it need not end at the light, but near it. */
 bool bp_pilot_is_found(const BpScene *scene, const BpPilotLight *light, const BpPilotMet *met,
                        const double point[3], const double direction[3]);
 

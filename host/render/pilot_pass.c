@@ -105,8 +105,8 @@ static void pass_group(const BpScene *scene, bool focused, const BpPilotLight *l
         for (int c = 0; c < 3; ++c) radiance[c] = glint * ray->carried[c] * light->radiance[c];
         const bool is_found =
             focused && bp_pilot_is_found(scene, light, &ray->met, scene->camera.lookfrom, ray->begins);
-        bp_pilot_add(is_found ? &parts->focused : &parts->chance, ray->pixel, radiance, ray->share * size2 / near2,
-                     bp_pilot_way(scene, ray->through));
+        bp_pilot_add(is_found ? &parts->focused : &parts->chance, ray->pixel, radiance,
+                     ray->share * size2 / near2, bp_pilot_way(scene, ray->through));
     }
 }
 

@@ -166,7 +166,7 @@ static LampWay pass_boundaries(const Scene *scene, const Path *path, vbool activ
         Vec3 outward;
         sphere_surface(ray, &boundary, slot, hit->t, hit->enters, &point, &outward);
 #if MEDIA_IN_TRIANGLES
-#if SMOOTH_TRIANGLES
+#if SHARES_KNOWN
         Shares shares;
 #endif
         surface_of_triangle(&scene->geometry, ray, hit, active, WITH_SHARES(&shares) &point, &outward);
