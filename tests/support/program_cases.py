@@ -43,6 +43,21 @@ def effects(document):
     return re.sub(" +", " ", with_file(document, lambda path: run("explain", path, "--wide").stdout.decode()))
 
 
+def told_apart(base, others):
+    """Films of the first document are not merged with those of any of the others."""
+    with tempfile.TemporaryDirectory() as folder:
+        for i, document in enumerate([base, *others]):
+            path = os.path.join(folder, str(i))
+            with open(path + ".json", "w", encoding="utf-8") as file:
+                json.dump(document, file)
+            run("render", path + ".json", "-o", path + ".bpa", "--spp", "4", "--quiet", *(["--first-sample", "4"] if i > 0 else []))
+            if i > 0:
+                done = subprocess.run([PROGRAM, "merge", os.path.join(folder, "0.bpa"), path + ".bpa", "-o", os.path.join(folder, "x.bpa")],
+                                      capture_output=True, check=False)
+                assert done.returncode == 2 and b"scene" in done.stderr, i
+    return "told apart"
+
+
 def run_cases(cases, deep_cases, options=()):
     """Runs those that the command line asks for; returns the exit code. `options`: that a test has beside --deep."""
     known = {case.__name__: case for case in cases + deep_cases}
