@@ -56,20 +56,21 @@ static size_t list_sets(uint32_t sets[SETS]) {
     return count;
 }
 
-static BpStatus dump(const char *folder, const BpProgramOptions *options, BpError *err) {
-    const bool needs_double = options->precision == BP_PRECISION_DOUBLE || options->double_refine;
+static BpStatus dump(const char *folder, BpProgramOptions options, BpError *err) {
+    const bool needs_double = options.precision == BP_PRECISION_DOUBLE || options.double_refine;
     char *source = NULL;
     char path[4096];
     FILE *file = NULL;
     BpStatus status = BP_OK;
     snprintf(path, sizeof path, "%s/%c%02x_t%d_w%u_l%u_p%d_m%d_n%d_s%d_k%d_r%d_x%d_o%d_a%u%s.cl", folder,
-             options->triangles_alone ? 't' : 'e', (unsigned)options->effects, (int)options->tree,
-             (unsigned)options->tree_width, (unsigned)options->packet_lanes, (int)options->precision,
-             (int)options->math, (int)options->numerics, (int)options->sampler, (int)options->form,
-             (int)options->double_refine, (int)options->pixel_list, (int)options->own_rounding,
-             (unsigned)options->parts, needs_double ? "_fp64" : "");
+             options.triangles_alone ? 't' : 'e', (unsigned)options.effects, (int)options.tree,
+             (unsigned)options.tree_width, (unsigned)options.packet_lanes, (int)options.precision,
+             (int)options.math, (int)options.numerics, (int)options.sampler, (int)options.form,
+             (int)options.double_refine, (int)options.pixel_list, (int)options.own_rounding,
+             (unsigned)options.parts, needs_double ? "_fp64" : "");
+    options.focuser_pairs = options.effects % 2 == 1; /* half of the sets, as test_effects_source knows */
     BP_TRY_GOTO(status,
-                bp_program_source(options, "entry/aovs.cl", bp_kernel_file("entry/aovs.cl"), &source, err),
+                bp_program_source(&options, "entry/aovs.cl", bp_kernel_file("entry/aovs.cl"), &source, err),
                 done);
     file = fopen(path, "w");
     if (file == NULL || fputs(source, file) < 0)
@@ -91,25 +92,25 @@ int main(int argc, char **argv) {
     for (size_t c = 0; status == BP_OK && c < count; ++c) {
         BpProgramOptions options = combination(combinations[c]);
         options.effects = BP_EFFECTS_ALL;
-        status = dump(argv[1], &options, &err);
+        status = dump(argv[1], options, &err);
     }
     for (size_t i = 0; status == BP_OK && i < set_count; ++i) {
         BpProgramOptions options = combination(combinations[i % count]);
         options.effects = sets[i] & BP_EFFECTS_ALL;
         options.tree = sets[i] >> BP_EFFECT_COUNT != 0;
-        status = dump(argv[1], &options, &err);
+        status = dump(argv[1], options, &err);
     }
     for (size_t c = 0; status == BP_OK && c < count; ++c) {
         BpProgramOptions options = combination(combinations[c]);
         options.effects =
             BP_EFFECTS_ALL & ~(1u << BP_EFFECT_LAMPS | 1u << BP_EFFECT_MEDIA | 1u << BP_EFFECT_CAPSULES);
         options.triangles_alone = true;
-        status = dump(argv[1], &options, &err);
+        status = dump(argv[1], options, &err);
         /* Or rays are sent to triangles, and to nothing else. */
         options.effects =
             BP_EFFECTS_ALL & ~(1u << BP_EFFECT_MEDIA | 1u << BP_EFFECT_DISCS | 1u << BP_EFFECT_ENVIRONMENT |
                                1u << BP_EFFECT_CAUSTICS | 1u << BP_EFFECT_CAPSULES);
-        if (status == BP_OK) status = dump(argv[1], &options, &err);
+        if (status == BP_OK) status = dump(argv[1], options, &err);
     }
     if (status != BP_OK) fprintf(stderr, "dump_kernels: %s\n", err.message);
     bp_error_clear(&err);

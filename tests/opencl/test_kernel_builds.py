@@ -38,7 +38,7 @@ class Builds(cli.ProgramTest):
 
     def test_once_for_a_suite(self):
         """Whatever the number of scenes and recorded pictures, a form of the kernel is built once."""
-        suite = ("check", "--suite", "--effects", "all", "--width", 4, "--spp", 128, "--margin", 100, "--quiet")
+        suite = ("check", "--suite", "--effects", "all", "--width", 4, "--spp", 512, "--margin", 100, "--quiet")
         self.succeed(*suite)  # the self-test is behind us
         builds, said = self.builds(*suite)
         self.assertEqual(said, "")

@@ -81,9 +81,9 @@ TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURE
             "smooth_surface": {"TRIANGLES", "SMOOTH_NORMALS"}, "scatter_folded": {"TRIANGLES", "SMOOTH_NORMALS"},
             "bodies_beyond": {"TRIANGLES", "MEDIA", "BODY_MEDIA"},
             "path->bodies": {"TRIANGLES", "MEDIA", "BODY_MEDIA"}, "ball_around_origin": {"CAPSULES", "MEDIA", "BODY_MEDIA"},
-            "normal_leaves": {"TRIANGLES", "SMOOTH_NORMALS"}, "Shares": {"TRIANGLES", "SMOOTH_NORMALS"},
+            "normal_leaves": {"TRIANGLES", "SMOOTH_NORMALS"},
             **{mark: {"TRIANGLES", "TEXTURES", "TEXTURE_COORDINATES"}
-               for mark in ("triangle_map", "MapPlace", "map_place", "coordinate_leaves", "triangle_coordinates", "triangle_between", "rows_ring")}}
+               for mark in ("triangle_map", "MapPlace", "map_place", "coordinate_leaves", "triangle_coordinates", "triangle_between")}}
 # Code that needs LAMPS, something to be lit (IS_LIT of dialect/real.cl), and one of the effects named.
 NEEDING_OTHERS = {
     "choose_lamp": {"EMISSION"}, "lamp_hit_weight": {"EMISSION"}, "disc_importance": {"DISCS"}, "disc_hit_weight": {"DISCS"},
@@ -94,7 +94,8 @@ NEEDING_OTHERS = {
 SHINING = ["see_triangle", "sample_triangle", "distance_to_triangle"]
 # Code that needs LAMPS, something to be lit, CAUSTICS, lamps or discs, and glass or mirrors.
 FOCUSING = ["focuser_importance", "chain_root", "follow_chain", "light_through_focuser", "path->chain"]
-
+# And where two of them may lead light on in turn.
+PAIRING = ["pair_roots", "begin_pair", "light_through_pair", "path->second"]
 
 # Code for spheres, which no program for triangles alone has, and every other one.
 SPHERES = ["sphere_intersect", "sphere_is_candidate", "sphere_exit", "sphere_surface", "load_sphere", "leaf_candidates", "intersect_own_sphere"]
@@ -127,6 +128,9 @@ def complaints(path):
     shares = "TRIANGLES" in effects and ("SMOOTH_NORMALS" in effects or {"TEXTURES", "TEXTURE_COORDINATES"} <= effects)
     if ("Shares" in text) != shares:
         found.append(f"{path.name}: 'Shares' {'is missing' if shares else 'is there'}")
+    rings = {"TRIANGLES", "TEXTURES", "TEXTURE_COORDINATES"} <= effects and bool({"IMAGES", "ENVIRONMENT"} & effects)
+    if ("rows_ring" in text) != rings:
+        found.append(f"{path.name}: 'rows_ring' {'is missing' if rings else 'is there'}")
     for mark, sources in NEEDING_OTHERS.items():
         needed = "LAMPS" in effects and bool(LIT & effects) and bool(sources & effects)
         if (mark in text) != needed:
@@ -135,6 +139,8 @@ def complaints(path):
                bool({"METAL", "DIELECTRIC"} & effects))
     found += [f"{path.name}: {mark!r} {'is missing' if focuses else 'is there'}"
               for mark in FOCUSING if (mark in text) != focuses]
+    pairs = focuses and bits % 2 == 1  # of dump_kernels, where both kinds shall be
+    found += [f"{path.name}: {mark!r} {'is missing' if pairs else 'is there'}" for mark in PAIRING if (mark in text) != pairs]
     shines = {"LAMPS", "EMISSION", "TRIANGLES", "TRIANGLE_LAMPS"} <= effects and bool(LIT & effects)
     found += [f"{path.name}: {mark!r} {'is missing' if shines else 'is there'}" for mark in SHINING if (mark in text) != shines]
     if ("turn_of" in text) != (shines or bool({"TEXTURES", "ENVIRONMENT"} & effects)):
