@@ -63,7 +63,7 @@ COMMANDS = {
                        inputs=("check s.json --width 8 --json old.json",), codes=(0, 1, 6)),
     "clobber": Command("render s.json --no-clobber -o a.pfm --error-map e.png", ("a.pfm", "e.png"), new_only=True),
     "exr": Command("merge 0.bpa 1.bpa -o m.exr", ("m.exr",), inputs=PARTS),
-    "suite": Command("check --suite --effects all --width 4 --spp 128 --margin 100 --json j.json --junit j.xml", ("j.json", "j.xml"),
+    "suite": Command("check --suite --effects all --width 4 --spp 512 --margin 100 --json j.json --junit j.xml", ("j.json", "j.xml"),
                      ("j.json", "j.xml"), often={"alloc": 20, "json": 200, "write": 10}, codes=(0, 1, 6)),
     "scene": Command("scene p.xyz -o p.json", ("p.json",)),
     "cover": Command("generate cover --grid 0 -o c.json", ("c.json",)),
