@@ -41,7 +41,7 @@ static double solid_angle(const Ray *ray, const BpTriangle *triangle) {
 static double winding(const BpScene *scene, const Ray *ray, uint32_t body) {
     double sum = 0;
     for (size_t i = scene->bodies.list[body].first; i < scene->triangle_count; ++i)
-        if (bp_body_of(scene, i) == body) sum += solid_angle(ray, &scene->triangles[i]);
+        if (scene->bodies.of_triangle[i] == body) sum += solid_angle(ray, &scene->triangles[i]);
     return sum / (4 * PI);
 }
 
