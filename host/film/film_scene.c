@@ -1,7 +1,6 @@
 /* film_scene.c: the scale of a scene's sums, and the hash by which films are compared; see film.h. */
 #include "film.h"
 
-#include "packed/focusers.h"
 #include "roulette_types.h"
 #include "scene/material.h"
 
@@ -68,6 +67,17 @@ static double flight_weight(const BpScene *scene) {
     return 1;
 }
 
+/* Whether light may come by way of two balls of glass or mirrors in turn. */
+static bool has_pair(const BpScene *scene) {
+    size_t count = 0;
+    for (size_t i = 0; i < scene->sphere_count && count < 2; i++) {
+        const BpMaterial *material = &scene->materials[scene->spheres[i].material];
+        count += material->kind == BP_MATERIAL_DIELECTRIC ||
+                 (material->kind == BP_MATERIAL_METAL && !(material->fuzz > 0));
+    }
+    return count == 2;
+}
+
 double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLightSampling light_sampling,
                                BpCaustics caustics, BpRoulette roulette) {
     double brightest = fmax(largest(scene->background_bottom), largest(scene->background_top));
@@ -104,10 +114,10 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLight
         roulette == BP_ROULETTE_ON && max_depth > ROULETTE_SEGMENTS ? max_depth - ROULETTE_SEGMENTS : 0;
     double bound = weight * brightest * geometric(passed_on, max_depth, passed_on > 0 ? deep : 0);
     /* A ray to a lamp brings half of its radiance at most, and so does each of the up to three ways through a
-     * focuser, and of the up to four through a pair. To the camera lead up to three through each of four
+     * focuser, and of the up to five through a pair. To the camera lead up to three through each of four
      * chains. */
     const double focused = caustics == BP_CAUSTICS_ON ? 3 * 0.5 : 0;
-    const double paired = caustics == BP_CAUSTICS_ON && bp_focusers_pair(scene) ? 4 * 0.5 : 0;
+    const double paired = caustics == BP_CAUSTICS_ON && has_pair(scene) ? 5 * 0.5 : 0;
     if (light_sampling != BP_LIGHT_SAMPLING_OFF && max_depth >= 2)
         bound += weight * brightest_lamp *
                  ((0.5 + focused + paired) * scattered * geometric(scattered, max_depth - 1, deep) +

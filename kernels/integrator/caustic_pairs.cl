@@ -2,7 +2,7 @@
  * two ways that share the work, as in caustics.cl.
  *
  * In:    paths that wait to be lit; what paths meet.   Out: paths with that light; the weight of a lamp that is met.
- * Knows: focuser_pairs.cl, chain_trace.cl.   Does not know: chains through one ball, how a path goes on.
+ * Knows: focuser_pairs.cl, chain_trace.cl.   Does not know: how chains through one ball are sought, how a path goes on.
  *
  * A pair, a lamp, a point of it and the number of chords are chosen by the numbers that choose a chain through one ball. */
 #if SAMPLES_PAIRS

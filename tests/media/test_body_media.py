@@ -17,7 +17,7 @@ import tempfile
 
 from body_scenes import add, box, box_stretch, comb, crossings_length, depth_along, off, pillow, scale, star, turned
 from pfm import read_pfm
-from program_cases import effects, picture, run, run_cases, told_apart, with_file
+from program_cases import PROGRAM, effects, picture, run, run_cases, told_apart, with_file
 
 SIDE = 16
 MATERIALS = {"edge": {"type": "interface"}, "glass": {"type": "dielectric", "refraction_index": 1.5, "fresnel": "none"},
