@@ -21,7 +21,7 @@
 #define PI 3.14159265358979323846
 #define ORDINARY 0.5
 #define TIMES 5.0
-#define TIMES_OF_PAIRS 8.0
+#define TIMES_OF_PAIRS 12.0
 /* A disk of A pixels has 2 sqrt(pi A) 4 / pi pixels on its rim, of which it fills any part alike: the mean of
  * f (1 - f) is 1/6. */
 #define RIM 0.752
