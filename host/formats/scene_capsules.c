@@ -89,19 +89,6 @@ static BpStatus parse_capsule(const BpNode *node, const BpMaterialIndex *index, 
     return parse_colors(&colors, scene, capsule, err);
 }
 
-/* What fills the capsule, of `count`. */
-static BpStatus parse_interior(const BpNode *node, size_t index, size_t count, BpScene *scene, BpError *err) {
-    const BpNode interior = bp_node_member(node, "interior");
-    if (interior.value == NULL) return BP_OK;
-    if (scene->capsule_interiors == NULL) {
-        scene->capsule_interiors = calloc(count, sizeof *scene->capsule_interiors);
-        if (scene->capsule_interiors == NULL)
-            return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu interiors", count);
-        scene->capsule_interior_count = count;
-    }
-    return bp_parse_medium_name(&interior, scene, &scene->capsule_interiors[index], err);
-}
-
 BpStatus bp_parse_capsules(const BpNode *node, const BpMaterialIndex *index, BpScene *scene, BpError *err) {
     BP_TRY(bp_node_list(
         node,
@@ -119,8 +106,9 @@ BpStatus bp_parse_capsules(const BpNode *node, const BpMaterialIndex *index, BpS
             return bp_node_wrong(&element, "an object: { \"ends\": ..., \"radius\": ..., \"material\": ... }",
                                  err);
         BP_TRY(parse_capsule(&element, index, scene, &scene->capsules[i], err));
-        BP_TRY(parse_interior(&element, i, count, scene, err));
+        BP_TRY(bp_parse_interior(&element, scene, i, count, &scene->capsule_interiors, err));
         scene->capsule_count = scene->listed_capsules = i + 1;
     }
+    if (scene->capsule_interiors != NULL) scene->capsule_interior_count = count;
     return BP_OK;
 }

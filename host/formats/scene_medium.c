@@ -56,3 +56,12 @@ BpStatus bp_parse_medium_name(const BpNode *node, const BpScene *scene, uint32_t
                                : bp_node_find(node, "medium", "media", scene->media, sizeof *scene->media,
                                               scene->medium_count, number, err);
 }
+
+BpStatus bp_parse_interior(const BpNode *node, const BpScene *scene, size_t index, size_t count,
+                           uint32_t **interiors, BpError *err) {
+    const BpNode interior = bp_node_member(node, "interior");
+    if (interior.value == NULL) return BP_OK;
+    if (*interiors == NULL) *interiors = calloc(count, sizeof **interiors);
+    if (*interiors == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu interiors", count);
+    return bp_parse_medium_name(&interior, scene, &(*interiors)[index], err);
+}

@@ -1,7 +1,7 @@
-/* scene_medium.h: the media of a scene document, and where a sphere or the scene asks for one.
+/* scene_medium.h: the media of a scene document, and where a shape or the scene asks for one.
  *
  * In:    the nodes of "media", "medium" and "interior".   Out: BpMedia; the number of a medium.
- * Knows: the grammar.   Does not know: which spheres are filled. Ranges are checked by scene_validate.c. */
+ * Knows: the grammar.   Does not know: which shapes are filled. Ranges are checked by scene_validate.c. */
 #ifndef BP_FORMATS_SCENE_MEDIUM_H
 #define BP_FORMATS_SCENE_MEDIUM_H
 
@@ -13,5 +13,9 @@ BpStatus bp_parse_media(const BpNode *node, BpScene *scene, BpError *err);
 /* Finds the medium that the node, a string, names; *number counts from 1, and stays where there is no node.
  */
 BpStatus bp_parse_medium_name(const BpNode *node, const BpScene *scene, uint32_t *number, BpError *err);
+/* What fills the shape `index`, a node with or without "interior", of `count`; *interiors, of all of them, is
+ * allocated for the first that has one. BP_ERR_MEMORY, and errors of the document. */
+BpStatus bp_parse_interior(const BpNode *node, const BpScene *scene, size_t index, size_t count,
+                           uint32_t **interiors, BpError *err);
 
 #endif

@@ -37,18 +37,6 @@ static BpStatus parse_motion(const BpNode *node, size_t index, size_t count, BpS
     return bp_node_vector(&end, scene->center_ends[index], err);
 }
 
-/* What fills the sphere `index`, of `count` that are listed. */
-static BpStatus parse_interior(const BpNode *node, size_t index, size_t count, BpScene *scene, BpError *err) {
-    const BpNode interior = bp_node_member(node, "interior");
-    if (interior.value == NULL) return BP_OK;
-    if (scene->interiors == NULL) {
-        scene->interiors = calloc(count, sizeof *scene->interiors);
-        if (scene->interiors == NULL)
-            return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu interiors", count);
-    }
-    return bp_parse_medium_name(&interior, scene, &scene->interiors[index], err);
-}
-
 BpStatus bp_parse_spheres(const BpNode *node, const BpMaterialIndex *index, BpScene *scene, BpError *err) {
     BP_TRY(bp_node_list(
         node, "a list of spheres: [ { \"center\": [0, 0, -1], \"radius\": 0.5, \"material\": ... } ]", err));
@@ -66,7 +54,7 @@ BpStatus bp_parse_spheres(const BpNode *node, const BpMaterialIndex *index, BpSc
                                  "an object: { \"center\": ..., \"radius\": ..., \"material\": ... }", err);
         BP_TRY(parse_sphere(&element, index, &scene->spheres[i], err));
         BP_TRY(parse_motion(&element, i, count, scene, err));
-        BP_TRY(parse_interior(&element, i, count, scene, err));
+        BP_TRY(bp_parse_interior(&element, scene, i, count, &scene->interiors, err));
     }
     scene->sphere_count = count;
     if (scene->center_ends != NULL) scene->moving_count = count;

@@ -473,20 +473,23 @@ BpTreeItem bp_tree_triangle_item(const BpScene *scene, uint32_t triangle, const 
     return item;
 }
 
+/* Writes `count` values of a triangle into its lane of a leaf, which has each for all lanes; NULL: zeros. */
+static void write_values(const BpTree *tree, void *values, uint32_t leaf, uint32_t lane,
+                         const float *of_triangle, uint32_t count) {
+    const size_t first = (size_t)(leaf - tree->first_triangles) * count;
+    for (uint32_t k = 0; k < count; ++k)
+        bp_reals_store(values, tree->single_precision, (first + k) * tree->width + lane,
+                       of_triangle != NULL ? (double)of_triangle[k] : 0);
+}
+
 /* Zeros where a triangle is flat. */
 static void write_normals(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
                           uint32_t count) {
     BpTree *tree = writer->tree;
-    const uint32_t width = tree->width;
-    const size_t base = (size_t)(leaf - tree->first_triangles) * TRIANGLE_REALS(width);
-    for (uint32_t lane = 0; lane < width; ++lane) {
+    for (uint32_t lane = 0; lane < tree->width; ++lane) {
         const float(*const normals)[3] =
             lane < count ? bp_triangle_normals(writer->scene, items[lane].sphere) : NULL;
-        for (uint32_t k = 0; k < 3; ++k)
-            for (uint32_t a = 0; a < 3; ++a)
-                bp_reals_store(tree->triangle_normals, tree->single_precision,
-                               base + (3 * k + a) * width + lane,
-                               normals != NULL ? (double)normals[k][a] : 0);
+        write_values(tree, tree->triangle_normals, leaf, lane, normals != NULL ? normals[0] : NULL, 9);
     }
 }
 
@@ -494,15 +497,9 @@ static void write_normals(const BpTreeWriter *writer, uint32_t leaf, const BpTre
 static void write_coordinates(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
                               uint32_t count) {
     BpTree *tree = writer->tree;
-    const uint32_t width = tree->width;
-    const size_t base = (size_t)(leaf - tree->first_triangles) * COORDINATE_REALS(width);
-    for (uint32_t lane = 0; lane < width; ++lane) {
-        const float *const coordinates =
-            lane < count ? bp_triangle_coordinates(writer->scene, items[lane].sphere) : NULL;
-        for (uint32_t k = 0; k < 6; ++k)
-            bp_reals_store(tree->triangle_coordinates, tree->single_precision, base + k * width + lane,
-                           coordinates != NULL ? (double)coordinates[k] : 0);
-    }
+    for (uint32_t lane = 0; lane < tree->width; ++lane)
+        write_values(tree, tree->triangle_coordinates, leaf, lane,
+                     lane < count ? bp_triangle_coordinates(writer->scene, items[lane].sphere) : NULL, 6);
 }
 
 /* Narrowed first, vertices are exact; a lane without a triangle has NaN. Widened by two units in the last

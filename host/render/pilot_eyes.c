@@ -91,8 +91,7 @@ static void pass_directly(BpPilot *pilot, const BpPilotSegment *segment, size_t 
 }
 
 static void keep_ray(BpPilot *pilot, const BpPilotSegment *segment, const double carried[3], double odds,
-                     uint32_t s, size_t square, uint32_t through, const BpPilotMet *met_before,
-                     uint64_t way) {
+                     uint32_t s, size_t square, const BpPilotMet *before, uint64_t way) {
     const bool met = (segment->flags & PILOT_MET) != 0;
     if (s + 1 > pilot->max_depth || pilot->ray_count == pilot->ray_room) return;
     BpPilotRay *ray = &pilot->rays[pilot->ray_count];
@@ -102,8 +101,8 @@ static void keep_ray(BpPilot *pilot, const BpPilotSegment *segment, const double
                         .share = odds / pilot->plan.of_pixel,
                         .pixel = (uint32_t)square,
                         .shape = segment->shape,
-                        .through = through};
-    if (met_before != NULL) ray->met = *met_before;
+                        .through = before->shapes[0],
+                        .met = *before};
     memcpy(ray->direction, segment->direction, sizeof ray->direction);
     memcpy(ray->carried, carried, sizeof ray->carried);
     for (int a = 0; a < 3; ++a)
@@ -128,7 +127,8 @@ static void keep_glint(BpPilot *pilot, const BpPilotSegment *segment, const BpPi
     way =
         bp_hash_bytes(bp_hash_bytes(way, &segment->shape, sizeof segment->shape), &refracts, sizeof refracts);
     const size_t before = pilot->ray_count;
-    keep_ray(pilot, &smooth, segment->throughput, segment->odds, s + 1, square, segment->shape, NULL, way);
+    const BpPilotMet lobe = {.shapes = {segment->shape}}; /* nothing that rays through focusers pass */
+    keep_ray(pilot, &smooth, segment->throughput, segment->odds, s + 1, square, &lobe, way);
     if (pilot->ray_count == before) return;
     pilot->rays[before].lobe = true;
     pilot->rays[before].turn = turn;
@@ -179,7 +179,6 @@ static void keep_eye(BpPilot *pilot, const BpPilotSegment *segment, uint32_t s, 
 static void follow_eye(BpPilot *pilot, const BpPilotFlight *flight, uint32_t path, size_t square) {
     const BpScene *scene = pilot->scene;
     Spread spread = first_spread(pilot);
-    uint32_t through = NO_SPHERE;
     BpPilotMet met = {0};
     double begins[3] = {0};
     uint64_t way = BP_HASH_START;
@@ -189,8 +188,8 @@ static void follow_eye(BpPilot *pilot, const BpPilotFlight *flight, uint32_t pat
         const double odds = bp_pilot_carried(flight, path, SEGMENTS, s, carried);
         if (s == 0) memcpy(begins, segment.direction, sizeof begins);
         const size_t before = pilot->ray_count;
-        if (through != NO_SPHERE)
-            keep_ray(pilot, &segment, carried, odds, s, square, through, &met, way);
+        if (met.count > 0)
+            keep_ray(pilot, &segment, carried, odds, s, square, &met, way);
         else if (s == 0)
             pass_directly(pilot, &segment, square);
         if (pilot->ray_count > before) memcpy(pilot->rays[before].begins, begins, sizeof begins);
@@ -205,7 +204,6 @@ static void follow_eye(BpPilot *pilot, const BpPilotFlight *flight, uint32_t pat
         }
         if (!bp_pilot_is_surface(scene, &segment) || !bp_pilot_segment(flight, path, SEGMENTS, s + 1, &next))
             continue;
-        if (through == NO_SPHERE) through = segment.shape;
         bp_pilot_meet(&met, segment.shape);
         double normal[3];
         bp_pilot_normal(scene, &segment, normal);

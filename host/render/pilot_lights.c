@@ -302,16 +302,6 @@ void bp_pilot_aim_clear(BpPilotAim *aim) {
 
 /* ---- paths ---- */
 
-/* Two unit vectors across a unit vector. */
-static void across(const double axis[3], double u[3], double v[3]) {
-    const int a = fabs(axis[0]) < 0.5 ? 0 : 1;
-    double helper[3] = {0};
-    helper[a] = 1;
-    bp_cross(axis, helper, u);
-    bp_normalize(u);
-    bp_cross(axis, u, v);
-}
-
 /* A point of the unit disk, by rejection: no sine and cosine, which differ between libraries. */
 static void disk(BpRandom *random, double point[2]) {
     do {
@@ -323,7 +313,7 @@ static void disk(BpRandom *random, double point[2]) {
 /* A direction, uniform in the cap around `axis` of 1 - cos `cap`. */
 static void in_cap(BpRandom *random, const double axis[3], double cap, double direction[3]) {
     double u[3], v[3], point[2];
-    across(axis, u, v);
+    bp_across(axis, u, v);
     disk(random, point);
     const double part = point[0] * point[0] + point[1] * point[1], m = part * cap;
     const double scale = part > 0 ? sqrt(cap * (2 - m)) : 0; /* sine of the angle over the root of `part` */
@@ -335,7 +325,7 @@ static void in_cap(BpRandom *random, const double axis[3], double cap, double di
 /* A direction by the cosine around `normal`. */
 static void by_cosine(BpRandom *random, const double normal[3], double direction[3]) {
     double u[3], v[3], point[2];
-    across(normal, u, v);
+    bp_across(normal, u, v);
     disk(random, point);
     const double up = sqrt(fmax(0, 1 - point[0] * point[0] - point[1] * point[1]));
     for (int a = 0; a < 3; ++a) direction[a] = up * normal[a] + point[0] * u[a] + point[1] * v[a];
@@ -347,7 +337,7 @@ static double start_distant(const BpPilotAim *aim, const BpPilotLight *light, co
                             double radius, BpRandom *random, BpPilotStart *start) {
     double toward[3], u[3], v[3], point[2];
     in_cap(random, light->place, light->cap, toward);
-    across(toward, u, v);
+    bp_across(toward, u, v);
     disk(random, point);
     const double far = aim->reach + sqrt(bp_distance2(aim->middle, center)) + radius;
     for (int a = 0; a < 3; ++a) {

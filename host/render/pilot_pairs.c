@@ -48,14 +48,6 @@ static double triple(const double a[3], const double b[3], const double c[3]) {
     return bp_dot(a, across);
 }
 
-/* Two unit vectors across a unit one. */
-static void across(const double w[3], double s[3], double t[3]) {
-    const double other[3] = {fabs(w[0]) < 0.5, fabs(w[0]) >= 0.5, 0};
-    bp_cross(other, w, s);
-    bp_normalize(s);
-    bp_cross(w, s, t);
-}
-
 /* Turns a line where it meets a ball. False: it does not, or nothing is refracted. */
 static bool meet(Beam *beam, double radius, double ratio, bool within, bool refracts) {
     double aside[3], point[3], normal[3], before[3];
@@ -99,7 +91,7 @@ static bool begin(const Search *search, const double direction[3], Beam *beam) {
     *beam = (Beam){0};
     memcpy(beam->direction, direction, sizeof beam->direction);
     add_scaled(-1, search->to_first, beam->origin);
-    across(direction, beam->turns[0], beam->turns[1]);
+    bp_across(direction, beam->turns[0], beam->turns[1]);
     const bool passes = pass_ball(&search->balls[0], beam);
     add_scaled(-1, search->between, beam->origin);
     return passes;
@@ -146,10 +138,9 @@ static bool turn_to_end(const Search *search, const double end[3], double near, 
         const double area = good ? triple(beam.direction, slopes[0], slopes[1]) : 0;
         good = good && fabs(area) > 1e-20;
         if (good) {
-            const double zero[3] = {0};
             least = bp_dot(miss, miss);
-            across(direction, s, t);
-            memcpy(step, zero, sizeof step);
+            bp_across(direction, s, t);
+            memset(step, 0, sizeof step);
             add_scaled(triple(beam.direction, miss, slopes[1]) / area, s, step);
             add_scaled(triple(beam.direction, slopes[0], miss) / area, t, step);
             length = bp_length(step);
@@ -176,7 +167,7 @@ static double turned(const Ball *ball, double near, double far, double incidence
            2 * ball->chords * asin(fmin(1, b / ball->index)) - wanted;
 }
 
-/* The first angle of incidence from `from` on at which the chain has turned so; on a rise, or on a fall. */
+/* The first angle of incidence at which the chain has turned so; on a rise, or on a fall. */
 static bool root_of(const Ball *ball, double near, double far, double wanted, bool rising,
                     double *incidence) {
     double last = turned(ball, near, far, 0, wanted);
@@ -221,8 +212,8 @@ static Plane plane_of(const Ball *ball, const double to_centre[3], const double 
 }
 
 static void plane_direction(const Plane *plane, double side, double sine, double direction[3]) {
-    const double off = sine * plane->near, zero[3] = {0};
-    memcpy(direction, zero, sizeof zero);
+    const double off = sine * plane->near;
+    memset(direction, 0, 3 * sizeof *direction);
     add_scaled(sqrt(fmax(0, 1 - off * off)), plane->axis, direction);
     add_scaled((plane->straight ? side : -side) * off, plane->aside, direction);
     bp_normalize(direction);

@@ -39,4 +39,14 @@ static inline double bp_normalize(double v[3]) {
     return length;
 }
 
+/* Two unit vectors across a unit vector, and across each other. */
+static inline void bp_across(const double axis[3], double u[3], double v[3]) {
+    const int a = fabs(axis[0]) < 0.5 ? 0 : 1;
+    double helper[3] = {0};
+    helper[a] = 1;
+    bp_cross(axis, helper, u);
+    bp_normalize(u);
+    bp_cross(axis, u, v);
+}
+
 #endif

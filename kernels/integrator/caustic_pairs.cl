@@ -21,11 +21,9 @@ static vuint follow_pair(const Scene *scene, vbool met, const Hit *hit, const Bs
                          Path *path) {
     const vbool left = vbool_of_uint(path->chain >= splat_uint(CHAIN_LEFT)) & vbool_of_uint(path->chain < splat_uint(CHAIN_SECOND));
     vbool begins = met & hit->enters & bsdf_sample->scattered & left & (path->pair_density > splat(0));
-    if (any_lane(begins)) begins = begins & is_focuser(scene, hit->slot);
+    vuint second;
+    if (any_lane(begins)) begins = begins & is_focuser(scene, hit->slot, &second);
     if (any_lane(begins)) {
-        vuint second = splat_uint(0);
-        for (uint i = 0; scene->focuser_places[i * FOCUSER_UINTS] != NO_SLOT; ++i)
-            second = choose_uint(vbool_of_uint(hit->slot == splat_uint(scene->focuser_places[i * FOCUSER_UINTS])), splat_uint(i), second);
         const vreal share = pair_share(scene, choose_uint(begins, path->focus.number, splat_uint(0)), second);
         begins = begins & (share > splat(0));
         path->second = choose_uint(begins, second, path->second);
@@ -41,15 +39,6 @@ static vuint follow_pair(const Scene *scene, vbool met, const Hit *hit, const Bs
     return choose_uint(goes_on, next, chain);
 }
 
-static Pair make_pair(const Scene *scene, vuint first, vuint second, Vec3 to_first) {
-    Pair pair;
-    pair.number[0] = first;
-    pair.number[1] = second;
-    pair.to_first = to_first;
-    pair.between = subtract3(focuser_centre(scene, second), focuser_centre(scene, first));
-    return pair;
-}
-
 /* The weight of the radiance of a lamp that the path meets in the lanes `hit`, by way of two balls; elsewhere 1. The end that is
  * sought is that of the line that led here, as Newton's method follows it. */
 static vreal pair_hit_weight(const Scene *scene, const Path *path, vuint lamp, vbool hit) {
@@ -60,20 +49,19 @@ static vreal pair_hit_weight(const Scene *scene, const Path *path, vuint lamp, v
     vuint target;
     vbool known = find_target(scene, second, lamp, through, &target);
     if (!any_lane(known)) return splat(1);
-    Pair pair = make_pair(scene, choose_uint(known, path->focus.number, splat_uint(0)), second,
-                          scale3(path->focus.distance, path->focus.axis));
-    pair.inside[0] = choose_uint(known, path->first_chords, splat_uint(0));
-    pair.inside[1] = choose_uint(known, path->chain - splat_uint(CHAIN_SECOND + CHAIN_LEFT), splat_uint(0));
+    const vuint last = choose_uint(known, path->chain - splat_uint(CHAIN_SECOND + CHAIN_LEFT), splat_uint(0));
+    Pair pair = make_pair(scene, make_ball(scene, choose_uint(known, path->focus.number, splat_uint(0)),
+                                           choose_uint(known, path->first_chords, splat_uint(0))),
+                          make_ball(scene, second, last), scale3(path->focus.distance, path->focus.axis));
     pair.density = path->pair_density;
     Beam beam;
     PairEnd end;
     vreal sines[2];
-    known = beam_through(scene, &pair, path->chain_begins, known, &beam, sines);
+    known = beam_through(&pair, path->chain_begins, known, &beam, sines);
     known = known & beam_end(scene, &pair, &beam, target, &end);
     if (!any_lane(known)) return splat(1);
-    const PairRoots roots = pair_roots(scene, &pair, &end, known);
-    const vreal same = divide(PAIR_SAME * gather_real(scene->focusers, pair.number[0] * FOCUSER_REALS + FOCUSER_RADIUS),
-                              choose(known, path->focus.distance, splat(1)));
+    const Directions roots = pair_roots(&pair, &end, known);
+    const vreal same = divide(PAIR_SAME * pair.balls[0].radius, choose(known, path->focus.distance, splat(1)));
     vbool found = vbool_none;
     for (uint k = 0; k < PAIR_ROOTS; ++k) {
         const Vec3 apart = subtract3(roots.direction[k], path->chain_begins);
@@ -118,24 +106,24 @@ static void light_through_pair(const Scene *scene, Path *path, vuint bounce, vbo
     choice.number = choose_second(scene, first, &by_target, &share);
     choice.probability = probability * share;
     vreal by_chain = sample_1d(path->key, dimension + CAUSTIC_CHAIN);
-    Pair pair = make_pair(scene, first, choice.number,
-                          subtract3(subtract3(focuser_centre(scene, first), path->origin.high), path->origin.low));
-    pair.inside[0] = choose_chords(scene, first, &by_chain);
-    pair.inside[1] = choice.inside = choose_chords(scene, choice.number, &by_chain);
+    const vuint first_chords = choose_chords(scene, first, &by_chain);
+    choice.inside = choose_chords(scene, choice.number, &by_chain);
     /* A segment to each ball, one for each chord, and one to the lamp. */
     active = active & (share > splat(0)) &
-             vbool_of_uint(path->depth + pair.inside[0] + pair.inside[1] + splat_uint(3) <= splat_uint(scene->max_depth));
+             vbool_of_uint(path->depth + first_chords + choice.inside + splat_uint(3) <= splat_uint(scene->max_depth));
     if (!any_lane(active)) return;
     choose_target(scene, path, by_target, active, &choice);
+    Pair pair = make_pair(scene, make_ball(scene, first, first_chords), make_ball(scene, choice.number, choice.inside),
+                          subtract3(subtract3(focuser_centre(scene, first), path->origin.high), path->origin.low));
     vreal u, v, far;
     sample_2d(path->key, dimension + CAUSTIC_POINT, &u, &v);
-    const vreal radius = gather_real(scene->focusers, choice.number * FOCUSER_REALS + FOCUSER_RADIUS);
+    const vreal radius = pair.balls[1].radius;
     const Vec3 aim = sample_target(scene, &choice, radius, u, v, &far);
     PairEnd end;
     end.far = choice.far;
     end.size = target_size(scene, choice.target, subtract3(target_centre(scene, choice.target), focuser_centre(scene, choice.number)), end.far);
     end.aim = scale3(choose(end.far, splat(1), divide(radius, choose(end.far, splat(1), far))), aim);
-    const PairRoots roots = pair_roots(scene, &pair, &end, active);
+    const Directions roots = pair_roots(&pair, &end, active);
     for (uint k = 0; k < PAIR_ROOTS; ++k) {
         const Vec3 direction = roots.direction[k];
         vbool lit = active & roots.found[k];
@@ -147,7 +135,7 @@ static void light_through_pair(const Scene *scene, Path *path, vuint bounce, vbo
         Vec3 weight = vec3(splat(1), splat(1), splat(1));
         path->lamp_rays += popcount(lane_bits(lit));
         for (uint ball = 0; ball < 2u && any_lane(lit); ++ball)
-            lit = pass_ball(scene, path->key, bounce, pair.number[ball], pair.inside[ball], lit, &ray, &weight);
+            lit = pass_ball(scene, path->key, bounce, pair.balls[ball].number, pair.balls[ball].inside, lit, &ray, &weight);
         if (any_lane(lit)) lit = meet_target(scene, &choice, &ray, lit);
         if (!any_lane(lit)) continue;
         const vreal ratio = pair_ratio(scene, &pair, choice.target, direction, lit);

@@ -20,9 +20,9 @@ static void follow_chain(const Scene *scene, Path *path, vbool met, const Hit *h
     const vbool outward = (vbool_not(hit->enters) & bsdf_sample->transmitted) | (hit->enters & vbool_not(bsdf_sample->transmitted));
     vuint chain = splat_uint(CHAIN_NONE);
     vbool begins = met & hit->enters & bsdf_sample->scattered & vbool_of_uint(path->lobe.kind != splat_uint(LOBE_NONE));
-    if (any_lane(begins)) begins = begins & is_focuser(scene, hit->slot);
+    vuint number;
+    if (any_lane(begins)) begins = begins & is_focuser(scene, hit->slot, &number);
     if (any_lane(begins)) {
-        vuint number;
         const vreal probability =
             choose_focuser(scene, FOCUSER_POWER, &path->origin, &path->lobe, splat(0), &hit->slot, &number);
         const vbool enters = begins & (probability > splat(0));

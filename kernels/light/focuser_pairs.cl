@@ -25,27 +25,36 @@
 #define PAIR_RIM R(0.995)
 #define GRAZING_MIN R(0x1p-10) /* cosines below are of lines that rounding may lead past the ball */
 
-typedef struct Pair {
-    vuint number[2];  /* of the focusers, from the vertex on */
-    vuint inside[2];  /* chords */
-    vreal density;    /* of a direction from the vertex, over the probability of choosing the pair */
-    Vec3 to_first;    /* from the vertex to the centre of the first */
-    Vec3 between;     /* from there to the centre of the second */
-} Pair;
-
-/* A focuser in a chain: as pairs hold them, and as chains through one ball want them. */
+/* One of the two focusers. */
 typedef struct Ball {
+    vuint number, inside; /* chords */
     vreal radius, index, inverse_index;
-    vuint inside;
 } Ball;
 
-static Ball ball_of(const Scene *scene, const Pair *pair, uint place) {
+typedef struct Pair {
+    Ball balls[2];  /* from the vertex on */
+    vreal density;  /* of a direction from the vertex, over the probability of choosing the pair */
+    Vec3 to_first;  /* from the vertex to the centre of the first */
+    Vec3 between;   /* from there to the centre of the second */
+} Pair;
+
+static Ball make_ball(const Scene *scene, vuint number, vuint inside) {
     Ball ball;
-    ball.radius = gather_real(scene->focusers, pair->number[place] * FOCUSER_REALS + FOCUSER_RADIUS);
-    ball.index = gather_real(scene->focusers, pair->number[place] * FOCUSER_REALS + FOCUSER_INDEX);
+    ball.number = number;
+    ball.inside = inside;
+    ball.radius = gather_real(scene->focusers, number * FOCUSER_REALS + FOCUSER_RADIUS);
+    ball.index = gather_real(scene->focusers, number * FOCUSER_REALS + FOCUSER_INDEX);
     ball.inverse_index = divide(splat(1), ball.index);
-    ball.inside = pair->inside[place];
     return ball;
+}
+
+static Pair make_pair(const Scene *scene, Ball first, Ball second, Vec3 to_first) {
+    Pair pair;
+    pair.balls[0] = first;
+    pair.balls[1] = second;
+    pair.to_first = to_first;
+    pair.between = subtract3(focuser_centre(scene, second.number), focuser_centre(scene, first.number));
+    return pair;
 }
 
 /* A line with its derivatives by two angles at its beginning. */
@@ -106,20 +115,19 @@ static vbool beam_pass(const Ball *ball, vbool active, Beam *beam, vreal *sine) 
     return active;
 }
 
-static vbool beam_start(const Ball *ball, const Pair *pair, Vec3 direction, vbool active, Beam *beam, vreal *sine) {
+static vbool beam_start(const Pair *pair, Vec3 direction, vbool active, Beam *beam, vreal *sine) {
     beam->origin = scale3(splat(-1), pair->to_first);
     beam->direction = direction;
     beam->moves[0] = beam->moves[1] = zero3();
     basis_across(direction, &beam->turns[0], &beam->turns[1]);
-    return beam_pass(ball, active, beam, sine);
+    return beam_pass(&pair->balls[0], active, beam, sine);
 }
 
 /* Through both balls. */
-static vbool beam_through(const Scene *scene, const Pair *pair, Vec3 direction, vbool active, Beam *beam, vreal sines[2]) {
-    const Ball first = ball_of(scene, pair, 0), second = ball_of(scene, pair, 1);
-    active = beam_start(&first, pair, direction, active, beam, &sines[0]);
+static vbool beam_through(const Pair *pair, Vec3 direction, vbool active, Beam *beam, vreal sines[2]) {
+    active = beam_start(pair, direction, active, beam, &sines[0]);
     beam->origin = subtract3(beam->origin, pair->between);
-    return beam_pass(&second, active, beam, &sines[1]);
+    return beam_pass(&pair->balls[1], active, beam, &sines[1]);
 }
 
 /* What a chain is to end at: a direction, or a point seen from the centre of the second ball. */
@@ -149,7 +157,7 @@ static vreal triple(Vec3 a, Vec3 b, Vec3 c) {
 }
 
 /* Turns a direction, in the lanes `active`, until its line ends where it should. Returns the lanes in which it does. */
-static vbool turn_to_end(const Scene *scene, const Pair *pair, const PairEnd *end, vreal near, vbool active, Vec3 *direction) {
+static vbool turn_to_end(const Pair *pair, const PairEnd *end, vreal near, vbool active, Vec3 *direction) {
     Vec3 best = *direction, tried = *direction, step = zero3();
     vreal least = splat(REAL_LARGE), shortened = splat(1);
     vbool found = vbool_none;
@@ -157,7 +165,7 @@ static vbool turn_to_end(const Scene *scene, const Pair *pair, const PairEnd *en
         Beam beam;
         Vec3 miss, slopes[2], s, t;
         vreal sines[2], distance;
-        vbool good = beam_through(scene, pair, tried, active, &beam, sines);
+        vbool good = beam_through(pair, tried, active, &beam, sines);
         good = good & beam_miss(&beam, end, &miss, slopes, &distance);
         const vreal off = dot3(miss, miss);
         good = good & (off < least);
@@ -203,83 +211,82 @@ static vbool plane_root(const Ball *ball, const ChainPlane *plane, uint piece, v
 }
 
 /* Directions, as many as each lane has, each once. */
-typedef struct PairRoots {
+typedef struct Directions {
     Vec3 direction[PAIR_ROOTS];
     vbool found[PAIR_ROOTS];
-} PairRoots;
+} Directions;
 
-static void add_root(PairRoots *roots, Vec3 direction, vbool found) {
+static void add_direction(Directions *directions, Vec3 direction, vbool found) {
     for (uint k = 0; k < PAIR_ROOTS; ++k) {
-        const vbool here = found & vbool_not(roots->found[k]);
-        roots->direction[k] = choose3(here, direction, roots->direction[k]);
-        roots->found[k] = roots->found[k] | here;
+        const vbool here = found & vbool_not(directions->found[k]);
+        directions->direction[k] = choose3(here, direction, directions->direction[k]);
+        directions->found[k] = directions->found[k] | here;
         found = found & vbool_not(here);
     }
 }
 
 /* Where Newton's method begins: behind each chain through the first ball to the middle of the second, for each way on from there to the end, the
  * chain through the first ball to where that way enters the second. */
-static void add_beginnings(const Scene *scene, const Pair *pair, const PairEnd *end, uint piece, Vec3 direction, vbool active,
-                           PairRoots *beginnings) {
-    const Ball first = ball_of(scene, pair, 0), second = ball_of(scene, pair, 1);
+static void add_beginnings(const Pair *pair, const PairEnd *end, uint piece, Vec3 direction, vbool active, Directions *beginnings) {
+    const Ball *first = &pair->balls[0], *second = &pair->balls[1];
     Beam beam;
     vreal sine;
-    vbool on = beam_start(&first, pair, direction, active, &beam, &sine);
+    vbool on = beam_start(pair, direction, active, &beam, &sine);
     const Vec3 start = subtract3(beam.origin, pair->between);
-    on = on & (dot3(start, start) > second.radius * second.radius);
+    on = on & (dot3(start, start) > second->radius * second->radius);
     vbool none = active;
     if (any_lane(on)) {
         const Vec3 to_second = choose3(on, scale3(splat(-1), start), pair->between);
-        const ChainPlane plane = plane_of(&second, to_second, end->aim, end->far);
+        const ChainPlane plane = plane_of(second, to_second, end->aim, end->far);
         for (uint other = 0; other < 3u; ++other) {
             Vec3 onward;
-            const vbool goes = plane_root(&second, &plane, other, on, &onward);
+            const vbool goes = plane_root(second, &plane, other, on, &onward);
             if (!any_lane(goes)) continue;
             const vreal along = dot3(to_second, onward);
             const Vec3 aside = madd3(along, onward, scale3(splat(-1), to_second));
-            const vreal half_chord = square_root(at_least(fma(second.radius, second.radius, -dot3(aside, aside)), splat(0)));
+            const vreal half_chord = square_root(at_least(fma(second->radius, second->radius, -dot3(aside, aside)), splat(0)));
             const Vec3 entry = add3(madd3(-half_chord, onward, aside), pair->between);
-            const ChainPlane again = plane_of(&first, pair->to_first, entry, vbool_none);
+            const ChainPlane again = plane_of(first, pair->to_first, entry, vbool_none);
             Vec3 better;
-            const vbool found = plane_root(&first, &again, piece < 3u ? piece : 2u, goes, &better);
-            add_root(beginnings, better, found);
+            const vbool found = plane_root(first, &again, piece < 3u ? piece : 2u, goes, &better);
+            add_direction(beginnings, better, found);
             none = none & vbool_not(found);
         }
     }
-    add_root(beginnings, direction, none);
+    add_direction(beginnings, direction, none);
 }
 
-static PairRoots no_roots(void) {
-    PairRoots roots;
+static Directions no_directions(void) {
+    Directions none;
     for (uint k = 0; k < PAIR_ROOTS; ++k) {
-        roots.direction[k] = zero3();
-        roots.found[k] = vbool_none;
+        none.direction[k] = zero3();
+        none.found[k] = vbool_none;
     }
-    return roots;
+    return none;
 }
 
 /* The directions that are found. */
-static PairRoots pair_roots(const Scene *scene, const Pair *pair, const PairEnd *end, vbool active) {
-    PairRoots beginnings = no_roots(), roots = no_roots();
-    const Ball first = ball_of(scene, pair, 0);
-    const ChainPlane plane = plane_of(&first, pair->to_first, pair->between, vbool_none);
+static Directions pair_roots(const Pair *pair, const PairEnd *end, vbool active) {
+    Directions beginnings = no_directions(), roots = no_directions();
+    const Ball *first = &pair->balls[0];
+    const ChainPlane plane = plane_of(first, pair->to_first, pair->between, vbool_none);
     for (uint piece = 0; piece < 3u; ++piece) {
         Vec3 direction;
-        const vbool leads = plane_root(&first, &plane, piece, active, &direction);
-        if (any_lane(leads)) add_beginnings(scene, pair, end, piece, direction, leads, &beginnings);
+        const vbool leads = plane_root(first, &plane, piece, active, &direction);
+        if (any_lane(leads)) add_beginnings(pair, end, piece, direction, leads, &beginnings);
     }
     const vbool none = active & vbool_not(beginnings.found[0]);
-    if (any_lane(none)) add_beginnings(scene, pair, end, 3u, plane_direction(&plane, splat(-1), splat(PAIR_RIM)), none, &beginnings);
+    if (any_lane(none)) add_beginnings(pair, end, 3u, plane_direction(&plane, splat(-1), splat(PAIR_RIM)), none, &beginnings);
     const vreal same = PAIR_SAME * plane.near;
     for (uint k = 0; k < PAIR_ROOTS; ++k) {
         if (!any_lane(beginnings.found[k])) break;
         Vec3 direction = beginnings.direction[k];
-        vbool found = turn_to_end(scene, pair, end, plane.near, beginnings.found[k], &direction);
+        vbool found = turn_to_end(pair, end, plane.near, beginnings.found[k], &direction);
         for (uint other = 0; other < PAIR_ROOTS; ++other) {
             const Vec3 apart = subtract3(direction, roots.direction[other]);
             found = found & (vbool_not(roots.found[other]) | (dot3(apart, apart) > same * same));
         }
-        add_root(&roots, direction, found);
+        add_direction(&roots, direction, found);
     }
     return roots;
 }
@@ -306,7 +313,7 @@ static vreal target_size(const Scene *scene, vuint target, Vec3 axis, vbool far)
 /* Where a line that has come through both balls ends: its direction, or the point in the plane of the target. False: that is behind. */
 static vbool beam_end(const Scene *scene, const Pair *pair, const Beam *beam, vuint target, PairEnd *end) {
     end->far = vbool_of_uint(gather_uint(scene->target_lamps, target) >= splat_uint(DISC_SLOT));
-    const Vec3 axis = subtract3(target_centre(scene, target), focuser_centre(scene, pair->number[1]));
+    const Vec3 axis = subtract3(target_centre(scene, target), focuser_centre(scene, pair->balls[1].number));
     const vreal along = dot3(beam->direction, axis);
     const vbool ahead = vbool_not(end->far) & (along > splat(0));
     const vreal t = divide(dot3(subtract3(axis, beam->origin), axis), choose(ahead, along, splat(1)));
@@ -322,7 +329,7 @@ static vreal pair_ratio(const Scene *scene, const Pair *pair, vuint target, Vec3
     PairEnd end;
     Vec3 miss, slopes[2];
     vreal sines[2], distance;
-    active = beam_through(scene, pair, direction, active, &beam, sines);
+    active = beam_through(pair, direction, active, &beam, sines);
     active = active & beam_end(scene, pair, &beam, target, &end);
     active = active & beam_miss(&beam, &end, &miss, slopes, &distance);
     if (!any_lane(active)) return splat(CHAIN_RATIO_MAX);
@@ -331,8 +338,9 @@ static vreal pair_ratio(const Scene *scene, const Pair *pair, vuint target, Vec3
     const vreal directed = splat(PI_INVERSE) * divide(spread, choose(end.far, splat(2) * extent, extent * extent * end.slant));
     vreal density = directed * gather_real(scene->targets, target * TARGET_REALS + TARGET_SHARE), chance = pair->density;
     for (uint ball = 0; ball < 2u; ++ball) {
-        density *= gather_real(scene->focusers, pair->number[ball] * FOCUSER_REALS + FOCUSER_CHAINS + pair->inside[ball]);
-        chance *= chain_probability(scene, pair->number[ball], sines[ball], pair->inside[ball]);
+        const vuint number = pair->balls[ball].number, inside = pair->balls[ball].inside;
+        density *= gather_real(scene->focusers, number * FOCUSER_REALS + FOCUSER_CHAINS + inside);
+        chance *= chain_probability(scene, number, sines[ball], inside);
     }
     const vbool drawn = active & (density > splat(0));
     return choose(drawn, at_most(divide(chance, choose(drawn, density, splat(1))), splat(CHAIN_RATIO_MAX)), splat(CHAIN_RATIO_MAX));

@@ -70,11 +70,15 @@ typedef struct Focus {
     vbool every;    /* each chain through it is tried, not one that is chosen */
 } Focus;
 
-/* The lanes whose slot is a focuser's. */
-static vbool is_focuser(const Scene *scene, vuint slot) {
+/* The lanes whose slot is a focuser's, and which one's it is. */
+static vbool is_focuser(const Scene *scene, vuint slot, vuint *number) {
     vbool known = vbool_none;
-    for (uint i = 0; scene->focuser_places[i * FOCUSER_UINTS] != NO_SLOT; ++i)
-        known = known | vbool_of_uint(slot == splat_uint(scene->focuser_places[i * FOCUSER_UINTS]));
+    *number = splat_uint(0);
+    for (uint i = 0; scene->focuser_places[i * FOCUSER_UINTS] != NO_SLOT; ++i) {
+        const vbool same = vbool_of_uint(slot == splat_uint(scene->focuser_places[i * FOCUSER_UINTS]));
+        *number = choose_uint(same, splat_uint(i), *number);
+        known = known | same;
+    }
     return known;
 }
 

@@ -16,6 +16,7 @@ import sys
 
 from program_cases import picture, run_cases
 from pfm import read_pfm
+from vectors import cross, dot, unit
 
 HALF, SUN, ALBEDO = 0.05, 1e6, 0.5
 PEA = 0.00390625
@@ -30,18 +31,6 @@ def glass(index=1.5, fresnel="exact"):
 
 def add(s, a, b):
     return (s * a[0] + b[0], s * a[1] + b[1], s * a[2] + b[2])
-
-
-def dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def cross(a, b):
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-def unit(a):
-    return add(1 / math.sqrt(dot(a, a)) - 1, a, a)
 
 
 def beside(w):

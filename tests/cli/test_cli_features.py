@@ -6,6 +6,7 @@ import bpa
 import cli
 import exr
 from pfm import read_pfm
+from vectors import cross, dot, unit
 
 TOLERANCE = 2e-6  # of single precision, a few roundings on
 
@@ -22,18 +23,6 @@ def rays(camera, width, height):
             x = (2 * (column + 0.5) / width - 1) * half * width / height
             y = (1 - 2 * (row + 0.5) / height) * half
             yield unit([f + x * r + y * u for f, r, u in zip(forward, right, up)])
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def unit(a):
-    return [x / math.sqrt(dot(a, a)) for x in a]
 
 
 class Features(cli.ProgramTest):

@@ -6,6 +6,8 @@ Knows: the scene's grammar, the rule for nested media.   Does not know: the prog
 import math
 import random
 
+from vectors import cross, dot
+
 
 def add(a, b):
     return [x + y for x, y in zip(a, b)]
@@ -13,14 +15,6 @@ def add(a, b):
 
 def scale(s, a):
     return [s * x for x in a]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 
 
 def turned(degrees, point):

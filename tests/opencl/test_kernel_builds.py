@@ -45,10 +45,10 @@ class Builds(cli.ProgramTest):
         kernels = set(self.read("builds").splitlines())
         lanes = {line.split()[1] for line in kernels}
         # One of lists, and one of trees, or one of small and one of large trees where these get packets of another size; and each
-        # again with light sampling, unless no scene with lights has a large tree.
+        # again with light sampling, and with light by way of two balls too, unless no such scene has a large tree.
         self.assertEqual(builds, len(kernels))
         once = 1 + len(lanes)
-        self.assertIn(builds, range(once + 2, 2 * once + 1))
+        self.assertIn(builds, range(once + 4, 3 * once + 1))
         with open(os.path.join(cli.SOURCE, "host/check/bits.json"), encoding="utf-8") as file:
             pictures = [p for p in json.load(file)["pictures"] if p["scene"] in ("tie", "bubble", "noise")]
         self.write("bits.json", {"pictures": pictures})

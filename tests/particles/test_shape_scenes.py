@@ -9,6 +9,7 @@ import exr
 from cli import ProgramTest, main
 from test_gsd_files import frame, texts
 from test_particle_files import floats, gsd_file
+from vectors import cross, dot, unit
 
 # A turn of 100 degrees about (1, 2, 3), and an ellipsoid of which no two axes are alike: no order of axes, sign or
 # order of components is like another.
@@ -16,18 +17,6 @@ DEGREES, AXIS, AXES, CENTER = 100, (1, 2, 3), (2.0, 1.0, 0.5), (3.0, -1.0, 2.0)
 CAMERA = {"image_width": 48, "aspect_ratio": [4, 3], "samples_per_pixel": 1, "vfov": 30, "pixel_sampling": "center",
           "lookfrom": [7, 5, 9], "lookat": list(CENTER), "vup": [0, 0, 1]}
 CUBE = [[x, y, z] for x in (-1, 1) for y in (-0.5, 0.5) for z in (-0.75, 0.75)]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def unit(a):
-    return [x / math.sqrt(dot(a, a)) for x in a]
 
 
 def turned(v, degrees=DEGREES, axis=AXIS):

@@ -18,6 +18,7 @@ import tempfile
 from fractions import Fraction
 
 from pfm import read_pfm
+from vectors import cross, unit
 
 PROGRAM, ONLY = sys.argv[1], sys.argv[3:]
 SIDE = 32
@@ -55,15 +56,6 @@ def is_chosen(name, options):
 
 def verdict(fine):
     return "" if fine else "FAILED: "
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def unit(a):
-    length = math.sqrt(sum(x * x for x in a))
-    return [x / length for x in a]
 
 
 def rotate(v, axis, angle):

@@ -12,6 +12,7 @@ import random
 
 from cli import SOURCE, ProgramTest, deep, main
 from pfm import read_pfm
+from vectors import cross, dot, unit
 
 loader = importlib.machinery.SourceFileLoader("images", os.path.join(SOURCE, "scripts/images"))
 images = importlib.util.module_from_spec(importlib.util.spec_from_loader("images", loader))
@@ -26,20 +27,8 @@ def texel(x, y):
     return [1 + (37 * x + 91 * y + 53 * c + 7 * x * y) % 256 / 64 for c in range(3)]
 
 
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
-
-
 def way(a, b):
     return [y - x for x, y in zip(a, b)]
-
-
-def unit(v):
-    return [x / math.hypot(*v) for x in v]
 
 
 def picture_of(u, v, repeat=(1, 1), clamped=False):
