@@ -199,6 +199,8 @@ typedef struct BpSphereSet {
     BpRows color;  /* 3 columns, linear, from 0 to 1: replaces the material's albedo. data NULL: none */
     const char *material; /* Optional. A name from the scene's "materials"; NULL: matte */
     const char *name;     /* Optional. What messages call the set; NULL: "the spheres" */
+    const char *interior; /* Optional. What fills the spheres, a name from the scene's "media": the material
+                             lets light in */
 } BpSphereSet;
 
 /* The same as bp_scene_parse(), with `set_count` sets of spheres after those that the document names, in the
@@ -225,6 +227,8 @@ typedef struct BpMeshSet {
                                may have several */
     BpRows uv; /* texture coordinates, of vertices; 2 columns, u and v, which grows upwards, from -1e6 to 1e6,
                   kept as floats: by them textures lie on the mesh. data NULL: none */
+    const char *interior; /* Optional. What fills the mesh, which is closed, a name from the scene's "media":
+                             the material lets light in */
 } BpMeshSet;
 
 /* Lines of one material, as arrays: capsules, with a radius and round ends, a sphere where both ends are in
@@ -237,9 +241,11 @@ typedef struct BpLineSet {
     BpRows radius;        /* of lines; 1 column, from 1e-12 to 1e9 */
     BpRows color[2];      /* of the halves by a line's first and second end, a row for each line; 3 columns,
                              linear, from 0 to 1: both replace the material's albedo. data NULL: none */
-    const char *material; /* Optional. A name from the scene's "materials", which neither emits nor is an
-                             interface; NULL: matte */
+    const char *material; /* Optional. A name from the scene's "materials", which does not emit;
+                             NULL: matte */
     const char *name;     /* Optional. What messages call the set; NULL: "the lines" */
+    const char *interior; /* Optional. What fills each line, a name from the scene's "media": the material
+                             lets light in */
 } BpLineSet;
 
 /* Shapes as arrays. Zero it, then set what there is. */

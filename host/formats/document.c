@@ -359,10 +359,8 @@ void bp_missing_name_text(const char *kind, const char *list, const char *const 
     }
 }
 
-BpStatus bp_node_find(const BpNode *node, const char *kind, const char *list, const void *things, size_t size,
-                      size_t count, uint32_t *number, BpError *err) {
-    const char *name = NULL;
-    BP_TRY(bp_node_string(node, &name, err));
+BpStatus bp_find_name(const char *name, const char *kind, const char *list, const void *things, size_t size,
+                      size_t count, uint32_t *number, char missing[BP_MISSING_NAME_SIZE], BpError *err) {
     const char **names = malloc((count + 1) * sizeof *names);
     if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
     size_t found = count;
@@ -370,12 +368,19 @@ BpStatus bp_node_find(const BpNode *node, const char *kind, const char *list, co
         names[i] = *(char *const *)((const char *)things + i * size);
         if (found == count && strcmp(names[i], name) == 0) found = i;
     }
-    char text[BP_MISSING_NAME_SIZE];
-    if (found == count) bp_missing_name_text(kind, list, names, count, name, text);
+    if (found == count) bp_missing_name_text(kind, list, names, count, name, missing);
     free(names);
-    if (found == count) return bp_node_fail(node, BP_PART_VALUE, err, "%s", text);
-    *number = (uint32_t)found + 1;
+    *number = found == count ? 0 : (uint32_t)found + 1;
     return BP_OK;
+}
+
+BpStatus bp_node_find(const BpNode *node, const char *kind, const char *list, const void *things, size_t size,
+                      size_t count, uint32_t *number, BpError *err) {
+    const char *name = NULL;
+    char missing[BP_MISSING_NAME_SIZE];
+    BP_TRY(bp_node_string(node, &name, err));
+    BP_TRY(bp_find_name(name, kind, list, things, size, count, number, missing, err));
+    return *number > 0 ? BP_OK : bp_node_fail(node, BP_PART_VALUE, err, "%s", missing);
 }
 
 BpStatus bp_node_wrong(const BpNode *node, const char *expected, BpError *err) {

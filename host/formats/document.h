@@ -70,8 +70,11 @@ BpStatus bp_node_wrong(const BpNode *node, const char *expected, BpError *err);
 enum { BP_MISSING_NAME_SIZE = 256 };
 void bp_missing_name_text(const char *kind, const char *list, const char *const *names, size_t count,
                           const char *name, char out[BP_MISSING_NAME_SIZE]);
-/* Finds what the node, a string, names among `count` things of `size` bytes, each of which begins with its
- * name; *number counts from 1. Fails with that text. */
+/* Finds `name` among `count` things of `size` bytes, each of which begins with its name; *number counts
+ * from 1. Where there is none, *number is 0 and `missing` that text. BP_ERR_MEMORY. */
+BpStatus bp_find_name(const char *name, const char *kind, const char *list, const void *things, size_t size,
+                      size_t count, uint32_t *number, char missing[BP_MISSING_NAME_SIZE], BpError *err);
+/* The same of what the node, a string, names. Fails with that text. */
 BpStatus bp_node_find(const BpNode *node, const char *kind, const char *list, const void *things, size_t size,
                       size_t count, uint32_t *number, BpError *err);
 

@@ -3,6 +3,7 @@
 
 #include "named_file.h"
 #include "rows.h"
+#include "scene_medium.h"
 
 #include "scene/capsule_rules.h"
 #include "scene/material.h"
@@ -84,9 +85,11 @@ static BpStatus read_colors(const BpLineSet *set, size_t i, BpScene *scene, BpCa
 }
 
 static BpStatus add_set(const BpLineSet *set, const BpMaterialIndex *index, BpScene *scene, BpError *err) {
-    uint32_t material = 0;
+    const size_t first = scene->capsule_count;
+    uint32_t material = 0, interior = 0;
     BpFault fault;
     BP_TRY(bp_material_of_set(index, set->material, name_of(set), scene, &material, err));
+    BP_TRY(bp_medium_of_set(set->interior, name_of(set), scene, &interior, err));
     if (bp_capsule_material_fault(scene, material, &fault))
         return bp_fail(err, BP_ERR_SCENE, "%s: %s: %s", name_of(set), fault.member, fault.text);
     const bool colored =
@@ -103,6 +106,10 @@ static BpStatus add_set(const BpLineSet *set, const BpMaterialIndex *index, BpSc
         if (colored) BP_TRY(read_colors(set, i, scene, capsule, err));
         scene->capsule_count++;
     }
+    if (interior == 0) return BP_OK;
+    BP_TRY(bp_make_interiors(scene->capsule_count, &scene->capsule_interiors, &scene->capsule_interior_count,
+                             err));
+    for (size_t i = first; i < scene->capsule_count; i++) scene->capsule_interiors[i] = interior;
     return BP_OK;
 }
 

@@ -4,6 +4,7 @@
 #include "mesh_triangles.h"
 #include "named_file.h"
 #include "rows.h"
+#include "scene_medium.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -129,6 +130,7 @@ static BpStatus add_set(const BpMeshSet *set, const BpMaterialIndex *index, BpSc
                                                (const double[3]){0, 0, 0})};
     const size_t first = scene->triangle_count;
     BpStatus status = bp_material_of_set(index, set->material, use.name, scene, &use.material, err);
+    if (status == BP_OK) status = bp_medium_of_set(set->interior, use.name, scene, &use.interior, err);
     if (status == BP_OK) status = read_set(set, &mesh, err);
     if (status == BP_OK) status = bp_mesh_add_triangles(&mesh, &use, scene, err);
     bp_mesh_clear(&mesh);

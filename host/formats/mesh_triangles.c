@@ -104,7 +104,8 @@ static BpStatus check_interior(const BpMesh *mesh, const BpMeshUse *use, const B
 /* Of the triangles from `first` on. */
 static BpStatus put_interiors(const BpMeshUse *use, size_t first, BpScene *scene, BpError *err) {
     if (use->interior == 0) return BP_OK;
-    BP_TRY(bp_scene_make_triangle_interiors(scene, scene->triangle_count, err));
+    BP_TRY(bp_make_interiors(scene->triangle_count, &scene->triangle_interiors,
+                             &scene->triangle_interior_count, err));
     for (size_t i = first; i < scene->triangle_count; i++)
         if (lets_light_in(scene, scene->triangles[i].material)) scene->triangle_interiors[i] = use->interior;
     return BP_OK;

@@ -57,6 +57,16 @@ BpStatus bp_parse_medium_name(const BpNode *node, const BpScene *scene, uint32_t
                                               scene->medium_count, number, err);
 }
 
+BpStatus bp_medium_of_set(const char *interior, const char *set, const BpScene *scene, uint32_t *number,
+                          BpError *err) {
+    char missing[BP_MISSING_NAME_SIZE];
+    *number = 0;
+    if (interior == NULL) return BP_OK;
+    BP_TRY(bp_find_name(interior, "medium", "media", scene->media, sizeof *scene->media, scene->medium_count,
+                        number, missing, err));
+    return *number > 0 ? BP_OK : bp_fail(err, BP_ERR_SCENE, "%s: interior: %s", set, missing);
+}
+
 BpStatus bp_parse_interior(const BpNode *node, const BpScene *scene, size_t index, size_t count,
                            uint32_t **interiors, BpError *err) {
     const BpNode interior = bp_node_member(node, "interior");

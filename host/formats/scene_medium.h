@@ -13,6 +13,10 @@ BpStatus bp_parse_media(const BpNode *node, BpScene *scene, BpError *err);
 /* Finds the medium that the node, a string, names; *number counts from 1, and stays where there is no node.
  */
 BpStatus bp_parse_medium_name(const BpNode *node, const BpScene *scene, uint32_t *number, BpError *err);
+/* The number of the medium that fills a set of shapes which a caller hands over, by its name; `interior`
+ * NULL: 0. `set`: what messages call the set. BP_ERR_SCENE proposes the nearest name; BP_ERR_MEMORY. */
+BpStatus bp_medium_of_set(const char *interior, const char *set, const BpScene *scene, uint32_t *number,
+                          BpError *err);
 /* What fills the shape `index`, a node with or without "interior", of `count`; *interiors, of all of them, is
  * allocated for the first that has one. BP_ERR_MEMORY, and errors of the document. */
 BpStatus bp_parse_interior(const BpNode *node, const BpScene *scene, size_t index, size_t count,

@@ -111,7 +111,8 @@ static BpStatus parse_interior(const BpNode *node, size_t each, BpScene *scene, 
     uint32_t number = 0;
     if (interior.value == NULL) return BP_OK;
     BP_TRY(bp_parse_medium_name(&interior, scene, &number, err));
-    BP_TRY(bp_scene_make_triangle_interiors(scene, scene->triangle_count, err));
+    BP_TRY(bp_make_interiors(scene->triangle_count, &scene->triangle_interiors,
+                             &scene->triangle_interior_count, err));
     for (size_t i = scene->triangle_count - each; i < scene->triangle_count; i++)
         scene->triangle_interiors[i] = number;
     return BP_OK;

@@ -298,15 +298,15 @@ size_t bp_scene_mapped_triangles(const BpScene *scene) {
     return count;
 }
 
-BpStatus bp_scene_make_triangle_interiors(BpScene *scene, size_t count, BpError *err) {
-    const size_t before = scene->triangle_interior_count;
+BpStatus bp_make_interiors(size_t count, uint32_t **interiors, size_t *interior_count, BpError *err) {
+    const size_t before = *interior_count;
     if (count <= before) return BP_OK;
-    uint32_t *const interiors = realloc(scene->triangle_interiors, count * sizeof *interiors);
-    if (interiors == NULL)
-        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the interiors of %zu triangles", count);
-    memset(interiors + before, 0, (count - before) * sizeof *interiors);
-    scene->triangle_interiors = interiors;
-    scene->triangle_interior_count = count;
+    uint32_t *const grown = realloc(*interiors, count * sizeof *grown);
+    if (grown == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the interiors of %zu shapes", count);
+    memset(grown + before, 0, (count - before) * sizeof *grown);
+    *interiors = grown;
+    *interior_count = count;
     return BP_OK;
 }
 

@@ -330,8 +330,8 @@ static inline const float (*bp_triangle_normals(const BpScene *scene, size_t tri
 }
 /* Makes room for the normals of `count` triangles in all; those that are new are 0. BP_ERR_MEMORY. */
 BpStatus bp_scene_make_normals(BpScene *scene, size_t count, BpError *err);
-/* The same of the interiors of triangles. */
-BpStatus bp_scene_make_triangle_interiors(BpScene *scene, size_t count, BpError *err);
+/* The same of the interiors of spheres, triangles or capsules: an array of the scene and its count. */
+BpStatus bp_make_interiors(size_t count, uint32_t **interiors, size_t *interior_count, BpError *err);
 
 /* The texture coordinates at a triangle's vertices, six numbers; NULL: it has none. */
 static inline const float *bp_triangle_coordinates(const BpScene *scene, size_t triangle) {

@@ -46,6 +46,11 @@ def c_text(what: str, text: typing.Union[str, "os.PathLike[str]"]) -> bytes:
     return encoded
 
 
+def c_name(what: str, name: typing.Optional[str]) -> typing.Optional[bytes]:
+    """A name for the library, or none."""
+    return None if name is None else c_text(what, name)
+
+
 def whole_number(name: str, value: typing.Any, least: int, most: int) -> int:
     """A whole number within limits."""
     try:

@@ -52,18 +52,18 @@ class BpRows(c.Structure):
 
 class BpSphereSet(c.Structure):
     _fields_ = [("count", c.c_size_t), ("center", BpRows), ("radius", BpRows), ("color", BpRows),
-                ("material", c.c_char_p), ("name", c.c_char_p)]
+                ("material", c.c_char_p), ("name", c.c_char_p), ("interior", c.c_char_p)]
 
 
 class BpMeshSet(c.Structure):
     _fields_ = [("vertex_count", c.c_size_t), ("triangle_count", c.c_size_t), ("vertex", BpRows), ("triangle", c.c_void_p),
                 ("color", BpRows), ("material", c.c_char_p), ("name", c.c_char_p), ("normal", BpRows), ("smooth", c.c_uint32),
-                ("uv_of_corners", c.c_uint32), ("uv", BpRows)]
+                ("uv_of_corners", c.c_uint32), ("uv", BpRows), ("interior", c.c_char_p)]
 
 
 class BpLineSet(c.Structure):
     _fields_ = [("point_count", c.c_size_t), ("line_count", c.c_size_t), ("point", BpRows), ("line", c.c_void_p), ("radius", BpRows),
-                ("color", BpRows * 2), ("material", c.c_char_p), ("name", c.c_char_p)]
+                ("color", BpRows * 2), ("material", c.c_char_p), ("name", c.c_char_p), ("interior", c.c_char_p)]
 
 
 class BpShapeSets(c.Structure):

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _library as lib
-from ._arguments import Array, c_text, floats, read
+from ._arguments import Array, c_name, c_text, floats, read
 from ._colors import Color, linear_colors
 from ._mesh import expect_vertices, rows, vertex_places
 
@@ -28,6 +28,7 @@ class Lines:
         each up to its middle. uint8 arrays and "#rrggbb" are sRGB; numbers (N,), (N, 2) or (V,) go through the colour map `cmap`, as in
         Spheres. As many of vertices as of lines: they are those of lines. None: the material's own.
     material: a name from the scene's "materials", or a material itself, which does not emit. None: matte.
+    interior: what fills each, a name from the scene's "media", or a medium itself, such as {"scattering": 0.1}: its material lets light in.
     up, view, name: as in Spheres.
     """
 
@@ -41,6 +42,7 @@ class Lines:
     up: str = "y"
     view: typing.Union[str, typing.Sequence[float]] = "three-quarter"
     name: str = "lines"
+    interior: typing.Union[None, str, typing.Mapping[str, typing.Any]] = None
 
     def _pairs(self) -> typing.Optional[Array]:
         """(N, 2), the numbers of points; None: `lines` are points."""
@@ -111,7 +113,7 @@ class Lines:
         self._expect_all("colors", np.isnan(linear).reshape(count, -1).any(axis=1), "colour for")
         return linear
 
-    def _set(self, material: typing.Optional[str], keep: typing.List[typing.Any]) -> lib.BpLineSet:
+    def _set(self, material: typing.Optional[str], interior: typing.Optional[str], keep: typing.List[typing.Any]) -> lib.BpLineSet:
         """For the library; `keep` gets what must live until it has read the arrays."""
         pairs = self._pairs()
         places = None if pairs is None else vertex_places(typing.cast(npt.ArrayLike, self.vertices), "V")
@@ -123,4 +125,4 @@ class Lines:
         keep += [points, radii, colors]
         return lib.BpLineSet(2 * count, count, rows(points, True), None, rows(radii, radii.ndim == 1),
                              (lib.BpRows * 2)(*[rows(half, half is not None and half.ndim == 2) for half in halves]),
-                             None if material is None else c_text("material", material), c_text("name", self.name))
+                             c_name("material", material), c_text("name", self.name), c_name("interior", interior))

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _library as lib
-from ._arguments import Array, c_text, floats, read
+from ._arguments import Array, c_name, c_text, floats, read
 from ._colors import Color, linear_colors
 
 # What bare meshes are made of.
@@ -64,6 +64,7 @@ class Mesh:
         (F, 4, 2), of each corner of the faces, so that a vertex on a seam may have several; v grows upwards.
     material: a name from the scene's "materials", or a material itself. Those that let light in ask for faces that are closed.
         None: matte.
+    interior: what fills it, a name from the scene's "media", or a medium itself, such as {"scattering": 0.1}: its material lets light in.
     up, view, name: as in Spheres.
     """
 
@@ -79,6 +80,7 @@ class Mesh:
     normals: typing.Optional[npt.ArrayLike] = None
     smooth: bool = False
     uvs: typing.Optional[npt.ArrayLike] = None
+    interior: typing.Union[None, str, typing.Mapping[str, typing.Any]] = None
 
     def _normals(self, count: int) -> typing.Optional[Array]:
         if self.normals is None:
@@ -140,7 +142,7 @@ class Mesh:
         means: Array = colors[corners].mean(axis=1) if of_vertices else colors
         return means
 
-    def _set(self, material: typing.Optional[str], keep: typing.List[typing.Any]) -> lib.BpMeshSet:
+    def _set(self, material: typing.Optional[str], interior: typing.Optional[str], keep: typing.List[typing.Any]) -> lib.BpMeshSet:
         """For the library; `keep` gets what must live until it has read the arrays."""
         places = self._places()
         corners = self._corners(len(places))
@@ -156,5 +158,5 @@ class Mesh:
         keep += [places, triangles, colors, normals, uvs]
         return lib.BpMeshSet(len(places), len(triangles), rows(places, True), c.c_void_p(triangles.ctypes.data),
                              rows(colors, colors is not None and colors.ndim == 2),
-                             None if material is None else c_text("material", material), c_text("name", self.name),
-                             rows(normals, True), int(self.smooth), int(of_corners), rows(uvs, True))
+                             c_name("material", material), c_text("name", self.name),
+                             rows(normals, True), int(self.smooth), int(of_corners), rows(uvs, True), c_name("interior", interior))

@@ -314,21 +314,21 @@ def make_scene(subject: typing.Optional[Subject] = None, *, vertices: typing.Opt
                lines: typing.Optional[npt.ArrayLike] = None, colors: typing.Optional[Color] = None,
                radius: typing.Optional[npt.ArrayLike] = None,
                color: typing.Optional[Color] = None, material: typing.Union[None, str, Document] = None,
+               interior: typing.Union[None, str, Document] = None,
                cmap: typing.Optional[str] = None, color_range: typing.Optional[typing.Tuple[float, float]] = None,
                up: typing.Optional[str] = None, camera: typing.Optional[Document] = None,
                width: typing.Optional[int] = None, height: typing.Optional[int] = None,
                materials: typing.Optional[Document] = None, textures: typing.Optional[Document] = None,
-               background: typing.Any = None,
+               media: typing.Optional[Document] = None, background: typing.Any = None,
                lighting: typing.Optional[str] = None, backdrop: typing.Any = None,
                select: typing.Optional[str] = None) -> Scene:
     """The scene that render() would render of the same arguments; its camera can be used for other pictures."""
     subject = _with_arrays(subject, {"vertices": vertices, "faces": faces, "normals": normals, "uvs": uvs, "lines": lines,
                                      "colors": colors})
-    looks: typing.Dict[str, typing.Any] = {"radius": radius, "color": color, "material": material, "cmap": cmap,
-                                           "color_range": color_range,
-                                           "up": up}
+    looks: typing.Dict[str, typing.Any] = {"radius": radius, "color": color, "material": material, "interior": interior, "cmap": cmap,
+                                           "color_range": color_range, "up": up}
     given = {name: value for name, value in looks.items() if value is not None}
-    scene_members = {name: value for name, value in (("materials", materials), ("textures", textures), ("background", background),
+    scene_members = {name: value for name, value in (("materials", materials), ("textures", textures), ("media", media), ("background", background),
                                                          ("lighting", lighting), ("backdrop", backdrop))
                      if value is not None}
     if isinstance(subject, (Scene, str, os.PathLike, collections.abc.Mapping)):
@@ -382,11 +382,11 @@ def render(subject: typing.Optional[Subject] = None, *, vertices: typing.Optiona
            uvs: typing.Optional[npt.ArrayLike] = None,
            lines: typing.Optional[npt.ArrayLike] = None, colors: typing.Optional[Color] = None,
            radius: typing.Optional[npt.ArrayLike] = None, color: typing.Optional[Color] = None,
-           material: typing.Union[None, str, Document] = None, cmap: typing.Optional[str] = None,
+           material: typing.Union[None, str, Document] = None, interior: typing.Union[None, str, Document] = None, cmap: typing.Optional[str] = None,
            color_range: typing.Optional[typing.Tuple[float, float]] = None, up: typing.Optional[str] = None,
            camera: typing.Optional[Document] = None, width: typing.Optional[int] = None,
            height: typing.Optional[int] = None, materials: typing.Optional[Document] = None,
-           textures: typing.Optional[Document] = None,
+           textures: typing.Optional[Document] = None, media: typing.Optional[Document] = None,
            background: typing.Any = None, lighting: typing.Optional[str] = None, backdrop: typing.Any = None,
            select: typing.Optional[str] = None,
            progress: typing.Union[None, bool, typing.Callable[[Progress], object]] = None,
@@ -396,9 +396,9 @@ def render(subject: typing.Optional[Subject] = None, *, vertices: typing.Optiona
     subject: positions (N, 3); Spheres, Meshes, Lines, or a list of them; a scene as a dict, a Scene, or the path of a scene, of a
     file of particles or of a mesh. Or in its place vertices, faces, normals, uvs and colors of a mesh, as in Mesh, or lines, vertices
     and colors of lines, as in Lines.
-    For positions and Spheres: radius, color, material, cmap, color_range and up as in Spheres; for Lines: those but
-    color; camera: members of the scene's "camera" (without lookfrom, lookat or focus_dist it is fitted to the shapes); width, height: of the picture;
-    materials, textures, background, lighting, backdrop: as in a scene. Without background and lighting, the light is "soft" on white, and for
+    For positions and Spheres: radius, color, material, interior, cmap, color_range and up as in Spheres; for Lines: those but
+    color; for a mesh: those but color and radius; camera: members of the scene's "camera" (without lookfrom, lookat or focus_dist it is fitted to the shapes); width, height: of the picture;
+    materials, textures, media, background, lighting, backdrop: as in a scene. Without background and lighting, the light is "soft" on white, and for
     a mesh that of a "studio".
     select: of a file of particles, or of a scene's, only those for which this expression holds, such as "element == 'Fe'".
     progress: True for a line on standard error, or a function that is called with a Progress about five times a second;
@@ -413,8 +413,8 @@ def render(subject: typing.Optional[Subject] = None, *, vertices: typing.Optiona
     report = _bar if progress is True else progress if callable(progress) else None
     try:
         scene = make_scene(subject, vertices=vertices, faces=faces, normals=normals, uvs=uvs, lines=lines, colors=colors, radius=radius,
-                           color=color, material=material, cmap=cmap, color_range=color_range, up=up, camera=camera, width=width,
-                           height=height, materials=materials, textures=textures, background=background, lighting=lighting, backdrop=backdrop,
+                           color=color, material=material, interior=interior, cmap=cmap, color_range=color_range, up=up, camera=camera, width=width,
+                           height=height, materials=materials, textures=textures, media=media, background=background, lighting=lighting, backdrop=backdrop,
                            select=select)
         running = Render(scene, **options)
     except KeyboardInterrupt:

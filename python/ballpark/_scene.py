@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _library as lib
-from ._arguments import Array, c_text, floats, warn, whole_number, wrong_type
+from ._arguments import Array, c_name, c_text, floats, warn, whole_number, wrong_type
 from ._colors import Color, linear_colors
 from ._interrupt import interruptible
 from ._lines import Lines
@@ -42,6 +42,7 @@ class Spheres:
         `color_range`. None: the material's own colour.
     material: a name from the scene's "materials", or a material itself, such as {"type": "metal", "albedo": [.9, .8,
         .5], "fuzz": 0.1}. None: matte.
+    interior: what fills each, a name from the scene's "media", or a medium itself, such as {"scattering": 0.1}: its material lets light in.
     up, view: the axis that is up, and where a fitted camera stands ("three-quarter", "front", ..., or a direction).
     name: what messages call them.
     """
@@ -55,6 +56,7 @@ class Spheres:
     up: str = "y"
     view: typing.Union[str, typing.Sequence[float]] = "three-quarter"
     name: str = "positions"
+    interior: typing.Union[None, str, Document] = None
 
     def _places(self) -> Array:
         places = floats(self.positions, "positions")
@@ -93,7 +95,7 @@ class Spheres:
             raise lib.SceneError(f"{what}: found no number (masked, missing or NaN) for sphere {first} (from 0) of "
                                  f"{self.name}{more}, expected one")
 
-    def _set(self, material: typing.Optional[str], keep: typing.List[typing.Any]) -> lib.BpSphereSet:
+    def _set(self, material: typing.Optional[str], interior: typing.Optional[str], keep: typing.List[typing.Any]) -> lib.BpSphereSet:
         """For the library; `keep` gets what must live until it has read the arrays."""
         places = self._places()
         count, kept = len(places), self._kept(places)
@@ -107,7 +109,7 @@ class Spheres:
         keep += [places, radii, colors]
         return lib.BpSphereSet(len(places), rows(places, True), rows(radii, radii.ndim == 1),
                                rows(colors, colors is not None and colors.ndim == 2),
-                               None if material is None else c_text("material", material), c_text("name", name))
+                               c_name("material", material), c_text("name", name), c_name("interior", interior))
 
 
 def _member(place: str, name: typing.Union[str, int]) -> str:
@@ -184,9 +186,9 @@ class Scene:
         shapes = list_of_shapes(spheres)
         text, names = self._text(document, shapes)
         keep: typing.List[typing.Any] = []
-        sets = [one._set(name, keep) for one, name in zip(shapes, names) if isinstance(one, Spheres)]
-        meshes = [one._set(name, keep) for one, name in zip(shapes, names) if isinstance(one, Mesh)]
-        lines = [one._set(name, keep) for one, name in zip(shapes, names) if isinstance(one, Lines)]
+        sets = [one._set(*name, keep) for one, name in zip(shapes, names) if isinstance(one, Spheres)]
+        meshes = [one._set(*name, keep) for one, name in zip(shapes, names) if isinstance(one, Mesh)]
+        lines = [one._set(*name, keep) for one, name in zip(shapes, names) if isinstance(one, Lines)]
         every = lib.BpShapeSets((lib.BpSphereSet * len(sets))(*sets), len(sets), (lib.BpMeshSet * len(meshes))(*meshes), len(meshes),
                                 (lib.BpLineSet * len(lines))(*lines), len(lines))
         self._handle = lib.Handle("scene")
@@ -199,23 +201,25 @@ class Scene:
         self._read()
 
     @staticmethod
-    def _text(document: Document,
-              sets: typing.Sequence[Shape]) -> typing.Tuple[bytes, typing.List[typing.Optional[str]]]:
-        """The document with the sets' own materials, and the name of each set's material."""
+    def _text(document: Document, sets: typing.Sequence[Shape]) -> typing.Tuple[bytes, typing.List[typing.Tuple[typing.Optional[str], typing.Optional[str]]]]:
+        """The document with the sets' own materials and media, and the names of each set's material and of what fills it."""
         if not isinstance(document, typing.Mapping):
             raise lib.SceneError(f"found {type(document).__name__}, expected a dict such as {{\"camera\": {{}}}}")
         wanted = dict(document)
-        names: typing.List[typing.Optional[str]] = []
+        names: typing.List[typing.Tuple[typing.Optional[str], typing.Optional[str]]] = []
+
+        def name_of(number: int, member: str, members: str, thing: typing.Any) -> typing.Optional[str]:
+            if isinstance(thing, typing.Mapping):
+                name = f"{sets[number].name} {number}"
+                wanted[members] = {**wanted.get(members, {}), name: thing}
+                return name
+            if thing is None or isinstance(thing, str):
+                return thing
+            raise wrong_type(member, thing, "a name or a dict")
+
         for number, one in enumerate(sets):
             material = CLAY if isinstance(one, Mesh) and one.material is None else one.material
-            if isinstance(material, typing.Mapping):
-                name = f"{one.name} {number}"
-                wanted["materials"] = {**wanted.get("materials", {}), name: material}
-                names.append(name)
-            elif one.material is None or isinstance(one.material, str):
-                names.append(one.material)
-            else:
-                raise wrong_type("material", one.material, "a name or a dict")
+            names.append((name_of(number, "material", "materials", material), name_of(number, "interior", "media", one.interior)))
         return json.dumps(_plain(wanted, "")).encode(), names
 
     @classmethod

@@ -55,6 +55,28 @@ assert "5 capsules" in repr(with_lines(ENDS, material="clay"))
 for nothing in (with_lines(np.empty((0, 2, 3)), material="clay"), with_lines([], material="clay"), with_lines([], POINTS, material="clay")):
     assert nothing.capsules == 0
 
+# What fills the lines, and spheres beside them, is a medium of the document; shapes of the document keep what they have.
+FOG, THIN = {"scattering": [3, 2, 1], "absorption": 0.5}, {"scattering": 0.5, "anisotropy": -0.5}
+own = {"center": [-1.25, 0.5, 0], "radius": 0.5, "material": "glass", "interior": "fog"}
+bare = {**own, "center": [1.25, -0.5, 0.25]}
+del bare["interior"]
+more = [{"center": [x, 0.75, 1.0], "radius": 0.375, "material": "edge", "interior": "thin"} for x in (-0.5, 0.25)]
+foggy = {**DOCUMENT, "media": {"fog": FOG, "thin": THIN}, "materials": {**DOCUMENT["materials"], "edge": {"type": "interface"}}}
+capsules = [{"ends": ends.tolist(), "radius": float(radius), "material": "edge", "interior": "fog"} for ends, radius in zip(ENDS, RADII)]
+dry = [{"ends": [[-1, -1, 0.5], [1, -1, 0.5]], "radius": 0.125, "material": "glass"}]
+expected = rgb(ballpark.Scene({**foggy, "spheres": [own, bare, *more], "capsules": dry + capsules}))
+for lines, balls in (("fog", "thin"), (FOG, THIN)):
+    assert np.array_equal(rgb(ballpark.Scene({**foggy, "spheres": [own, bare], "capsules": dry},
+                                             [ballpark.Lines(ENDS, radius=RADII, material="edge", interior=lines),
+                                              ballpark.Spheres([one["center"] for one in more], 0.375, material="edge", interior=balls)])), expected)
+refused(ballpark.SceneError, 'lines: interior: found the medium "thick", expected a name from "media"', ballpark.Scene, foggy,
+        ballpark.Lines(ENDS, material="edge", interior="thick"))
+refused(ballpark.SceneError, 'positions: interior: found the medium "thick"', ballpark.Scene, foggy, ballpark.Spheres(POINTS, material="edge", interior="thick"))
+refused(ballpark.SceneError, "interior", ballpark.Scene, foggy, ballpark.Lines(ENDS, material="clay", interior="fog"))
+refused(ballpark.SceneError, "interior", ballpark.Scene, foggy, ballpark.Spheres(POINTS, material="clay", interior="fog"))
+assert np.array_equal(np.array(ballpark.render(POINTS, radius=0.5, material={"type": "interface"}, interior=FOG, width=24, spp=4).radiance),
+                      np.array(ballpark.render(ballpark.Spheres(POINTS, 0.5, material={"type": "interface"}, interior=FOG), width=24, spp=4).radiance))
+
 # Beside spheres and a mesh, in one scene.
 cube = ballpark.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], material="clay")
 ball = ballpark.Spheres([[2.0, 0, 0]], 0.5, material="glass")

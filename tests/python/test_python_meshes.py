@@ -76,6 +76,24 @@ refused(ballpark.SceneError, "normals: found no finite number for vertex 1", wit
 framed = ballpark.render(vertices=CORNERS, faces=FACES, normals=normals, width=24, spp=4)
 assert np.array_equal(np.array(framed.radiance), np.array(ballpark.render(ballpark.Mesh(CORNERS, FACES, normals=normals), width=24, spp=4).radiance))
 
+# What fills a mesh is a medium of the document, by its name or as a dict, and of this mesh alone.
+FOG = {"scattering": [3, 2, 1], "absorption": 0.5, "anisotropy": 0.25}
+FOGGY = {**DOCUMENT, "media": {"thin": {"scattering": 0.25}, "fog": FOG}, "materials": {**DOCUMENT["materials"], "edge": {"type": "interface"}}}
+apart = CORNERS + [0, 0, 1.5]
+filled = [{"vertices": (CORNERS if k < 12 else apart)[FACES[k % 12]].tolist(), "material": "edge", "interior": "fog" if k < 12 else "thin"} for k in range(24)]
+expected = rgb(ballpark.Scene({**FOGGY, "triangles": filled}))
+for first in ("fog", FOG):
+    assert np.array_equal(rgb(ballpark.Scene(FOGGY, [ballpark.Mesh(CORNERS, FACES, material="edge", interior=first),
+                                                     ballpark.Mesh(apart, QUADS, material="edge", interior="thin")])), expected)
+refused(ballpark.SceneError, 'mesh: interior: found the medium "fogg", expected a name from "media"; did you mean "fog"?', ballpark.Scene, FOGGY,
+        ballpark.Mesh(CORNERS, FACES, material="edge", interior="fogg"))
+refused(ballpark.SceneError, "no material of the mesh lets light in", ballpark.Scene, FOGGY, ballpark.Mesh(CORNERS, FACES, material="clay", interior="fog"))
+refused(ballpark.SceneError, "the edge from", ballpark.Scene, FOGGY, ballpark.Mesh(CORNERS, FACES[:11], material="edge", interior="fog"))
+refused(TypeError, "interior: found int", ballpark.Scene, FOGGY, ballpark.Mesh(CORNERS, FACES, material="edge", interior=3))
+framed = ballpark.render(vertices=CORNERS, faces=FACES, material={"type": "interface"}, interior="fog", media={"fog": FOG}, width=24, spp=4)
+alone = ballpark.Mesh(CORNERS, FACES, material={"type": "interface"}, interior=FOG)
+assert np.array_equal(np.array(framed.radiance), np.array(ballpark.render(alone, width=24, spp=4).radiance))
+
 # Texture coordinates of vertices, and of corners, are those of a document's triangles.
 TEXTURES = {"map": {"type": "checker", "mapping": "surface", "colors": [0.1, [0.9, 0.5, 0.2]], "repeat": [3, 2]}}
 PAINTED = {"painted": {"type": "lambertian", "albedo": {"texture": "map"}}}

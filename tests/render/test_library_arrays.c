@@ -427,6 +427,65 @@ static void test_lines_refused(void **state) {
     assert_lines_refused(&lines, BP_ERR_SCENE, "expected fewer");
 }
 
+/* ---- what fills them ---- */
+
+#define FOGGY                                                                                                \
+    "{ \"camera\": { \"image_width\": 20, \"lookfrom\": [0, 1, 4], \"lookat\": [0, 0, 0], \"vfov\": 40 }, "  \
+    "\"materials\": { \"edge\": { \"type\": \"interface\" }, \"glass\": { \"type\": \"dielectric\", "        \
+    "\"refraction_index\": 1.5 } }, \"media\": { \"thin\": { \"scattering\": 0.5 }, "                        \
+    "\"thick\": { \"scattering\": [1, 2, 4], \"absorption\": 0.25 } }, "
+#define FIRST_SPHERE "\"spheres\": [ { \"center\": [0, -1, 1], \"radius\": 0.25, \"material\": \"glass\" }"
+#define FIRST_TRIANGLES "\"boxes\": [ { \"corners\": [[-2, 1, 0], [-1, 2, 1]], \"material\": \"glass\" }"
+#define FIRST_CAPSULE                                                                                        \
+    "\"capsules\": [ { \"ends\": [[-1, -1, 0], [1, -1, 0]], \"radius\": 0.125, \"material\": \"glass\" }"
+
+/* Spheres, a box and lines from arrays, filled, behind shapes that are not: the picture of the document that
+ * lists them. */
+static void test_interiors(void **state) {
+    (void)state;
+    static const char listed_shapes[] = FOGGY FIRST_SPHERE
+        ", { \"center\": [0.5, 0, 0.25], \"radius\": 0.5, \"material\": \"edge\", \"interior\": \"thin\" }"
+        ", { \"center\": [-0.5, 0, 0], \"radius\": 0.25, \"material\": \"edge\", \"interior\": \"thin\" } "
+        "], " FIRST_TRIANGLES ", { \"corners\": [[1, 0, -1], [2, 1, 0]], \"material\": \"edge\", "
+        "\"interior\": \"thick\" } ], " FIRST_CAPSULE
+        ", { \"ends\": [[-1, -0.25, 0], [0, 0.5, 0.25]], \"radius\": 0.25, \"material\": \"edge\", "
+        "\"interior\": \"thick\" }"
+        ", { \"ends\": [[0.75, -0.25, 0], [0, 0.5, 0.25]], \"radius\": 0.125, \"material\": \"edge\", "
+        "\"interior\": \"thick\" } ] }";
+    static const char bare[] = FOGGY FIRST_SPHERE " ], " FIRST_TRIANGLES " ], " FIRST_CAPSULE " ] }";
+    static const double box[8][3] = {{1, 0, -1}, {2, 0, -1}, {1, 1, -1}, {2, 1, -1},
+                                     {1, 0, 0},  {2, 0, 0},  {1, 1, 0},  {2, 1, 0}};
+    static const uint32_t sides[12][3] = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
+                                          {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
+    BpSphereSet spheres = make_set();
+    BpMeshSet mesh = {.vertex_count = 8,
+                      .triangle_count = 12,
+                      .vertex = {box, sizeof box[0], sizeof(double), BP_NUMBER_DOUBLE},
+                      .triangle = &sides[0][0],
+                      .material = "edge",
+                      .interior = "thick"};
+    BpLineSet lines = make_lines();
+    const BpShapeSets shapes = {.spheres = &spheres,
+                                .sphere_set_count = 1,
+                                .meshes = &mesh,
+                                .mesh_set_count = 1,
+                                .lines = &lines,
+                                .line_set_count = 1};
+    BpScene *scene = NULL;
+    spheres.material = lines.material = "edge";
+    spheres.interior = "thin";
+    lines.interior = "thick";
+    must(bp_scene_parse_with_shapes(bare, strlen(bare), "document", &shapes, &scene, &err));
+    assert_same(parse(listed_shapes, NULL, 0), scene);
+    scene = NULL;
+    mesh.interior = "thicc";
+    assert_int_equal(bp_scene_parse_with_shapes(bare, strlen(bare), "document", &shapes, &scene, &err),
+                     BP_ERR_SCENE);
+    assert_null(scene);
+    assert_non_null(strstr(err.message, "the mesh: interior: found the medium \"thicc\""));
+    assert_non_null(strstr(err.message, "did you mean \"thick\"?"));
+}
+
 static void test_picture_in_memory(void **state) {
     (void)state;
     const BpSphereSet set = make_set();
@@ -507,6 +566,7 @@ int main(void) {
         cmocka_unit_test(test_colors_of_lines),
         cmocka_unit_test(test_fit_of_lines),
         cmocka_unit_test(test_lines_refused),
+        cmocka_unit_test(test_interiors),
         cmocka_unit_test(test_picture_in_memory),
         cmocka_unit_test(test_looks),
     };
