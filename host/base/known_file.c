@@ -17,13 +17,13 @@ typedef struct Known {
 
 static const Known known[] = {{{BP_FILE_SUMS, "the sums of a render (.bpa)"}, BEGINS("{\"ballpark_film\"")},
                               {{BP_FILE_PICTURE, "a PNG picture"}, BEGINS("\x89PNG")},
+                              {{BP_FILE_PICTURE, "a JPEG picture"}, BEGINS("\xff\xd8\xff")},
                               {{BP_FILE_PICTURE, "an EXR picture"}, BEGINS("\x76\x2f\x31\x01")},
                               {{BP_FILE_PICTURE, "a PFM picture"}, BEGINS("PF")},
                               {{BP_FILE_PICTURE, "a PFM picture"}, BEGINS("Pf")},
-                              {{BP_FILE_PICTURE, "a Radiance picture (.hdr)"}, BEGINS("#?R")},
+                              {{BP_FILE_PICTURE, "a Radiance picture (.hdr)"}, BEGINS("#?")},
                               {{BP_FILE_IMAGE, "a PPM picture"}, BEGINS("P6")},
                               {{BP_FILE_IMAGE, "a PPM picture"}, BEGINS("P3")},
-                              {{BP_FILE_IMAGE, "a JPEG picture"}, BEGINS("\xff\xd8\xff")},
                               {{BP_FILE_IMAGE, "a GIF picture"}, BEGINS("GIF8")},
                               {{BP_FILE_IMAGE, "a TIFF picture"}, BEGINS("II*\0")},
                               {{BP_FILE_IMAGE, "a TIFF picture"}, BEGINS("MM\0*")},
@@ -130,4 +130,9 @@ const char *bp_known_file_remedy(const BpKnownFile *file) {
                "book";
     }
     return "";
+}
+
+bool bp_is_picture(const void *bytes, size_t length) {
+    BpKnownFile found;
+    return bp_known_file("", bytes, length, &found) && found.kind == BP_FILE_PICTURE;
 }

@@ -28,6 +28,9 @@ typedef struct BpKnownFile {
 /* Whether it is one of them, by its first bytes or its name, which may be a path and need not exist. */
 bool bp_known_file(const char *name, const char *bytes, size_t length, BpKnownFile *found);
 
+/* Whether a file that begins so is an image that this program reads. */
+bool bp_is_picture(const void *bytes, size_t length);
+
 /* Advice on such a file where a scene was expected: "; ..." or "". Static. */
 const char *bp_known_file_remedy(const BpKnownFile *file);
 

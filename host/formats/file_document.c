@@ -3,6 +3,7 @@
 
 #include "base/input_file.h"
 #include "base/json_memory.h"
+#include "base/known_file.h"
 #include "mesh_triangles.h"
 
 #include <jansson.h>
@@ -58,15 +59,12 @@ BpStatus bp_particle_document(const char *path, char **text, BpError *err) {
 
 /* Whether a file beside the mesh is an image that is read, by its first bytes. */
 static bool is_image(const char *mesh_path, const char *name) {
-    static const char *const marks[] = {"\x89PNG", "v/1\x01", "PF", "Pf", "#?"};
-    char begin[4] = "", *const path = bp_path_beside(mesh_path, name);
+    char begin[16], *const path = bp_path_beside(mesh_path, name);
     FILE *stream = NULL;
     uint64_t size = 0;
     bool found = false;
     if (path != NULL && bp_file_open(path, false, "an image", &stream, &size, NULL) == BP_OK) {
-        const size_t length = fread(begin, 1, sizeof begin, stream);
-        for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
-            found |= length == sizeof begin && memcmp(begin, marks[i], strlen(marks[i])) == 0;
+        found = bp_is_picture(begin, fread(begin, 1, sizeof begin, stream));
         fclose(stream);
     }
     free(path);
@@ -89,10 +87,11 @@ static void offer_image(const BpMesh *mesh, uint32_t number, const char *path, j
     const BpMeshMaterial *const offer = &mesh->materials[number];
     const bool inside = offer->image_inside > 0;
     if ((offer->image_file == NULL && !inside) || json_object_get(material, "albedo") == NULL) return;
-    const char *const why = !has_coordinates(mesh, number) ? "not all of its faces have texture coordinates"
-                            : !inside && !is_image(path, offer->image_file)
-                                ? "there is no such file that is a PNG, OpenEXR, PFM or Radiance picture"
-                                : NULL;
+    const char *const why =
+        !has_coordinates(mesh, number) ? "not all of its faces have texture coordinates"
+        : !inside && !is_image(path, offer->image_file)
+            ? "there is no such file that is a PNG, JPEG, OpenEXR, PFM or Radiance picture"
+            : NULL;
     if (why != NULL) {
         snprintf(note, BP_DOCUMENT_NOTE_SIZE, "the image %.60s of the material \"%.60s\" is left out: %s",
                  inside ? "inside" : offer->image_file, offer->name, why);

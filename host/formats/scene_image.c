@@ -40,8 +40,8 @@ static BpStatus read_file(const BpNode *node, const char *file, uint32_t inside,
         left -= (uint64_t)scene->images[i]->width * scene->images[i]->height;
     char *path = bp_path_beside(node->document->name, file);
     if (path == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a path");
-    BpStatus status =
-        bp_node_open_file(node, path, "an image: PNG, OpenEXR, PFM or Radiance (.hdr)", &stream, &size, err);
+    BpStatus status = bp_node_open_file(node, path, "an image: PNG, JPEG, OpenEXR, PFM or Radiance (.hdr)",
+                                        &stream, &size, err);
     if (status == BP_OK) {
         status = inside > 0 ? read_inside(stream, path, inside, encoding, scale, left, image, err)
                             : bp_image_read(stream, size, path, encoding, scale, left, image, err);

@@ -130,7 +130,7 @@ static BpStatus parse_image(const BpNode *node, unsigned flags, BpScene *scene, 
     uint32_t inside = 0;
     int choice = BP_WRAP_REPEAT;
     BP_TRY(bp_node_require(node, "file",
-                           "the path of a PNG, EXR, PFM or Radiance file, or with \"image\" of a glTF "
+                           "the path of a PNG, JPEG, EXR, PFM or Radiance file, or with \"image\" of a glTF "
                            "file, relative to the scene",
                            err));
     BP_TRY(bp_node_choice(&wrap, bp_wrap_names, bp_wrap_count, &choice, err));

@@ -16,7 +16,7 @@ static BpStatus fail_kind(const BpImageInput *input, BpError *err) {
     else
         bp_known_file(input->path, bytes, length, &known);
     return bp_image_fail(
-        input, err, "found %s, expected an image: PNG, OpenEXR, PFM or Radiance (.hdr)%s", known.what,
+        input, err, "found %s, expected an image: PNG, JPEG, OpenEXR, PFM or Radiance (.hdr)%s", known.what,
         known.kind == BP_FILE_IMAGE ? "; ImageMagick converts it: convert FILE FILE.png" : "");
 }
 
@@ -27,6 +27,7 @@ BpStatus bp_image_read(FILE *stream, uint64_t size, const char *path, BpEncoding
         size_t count;
         BpStatus (*read)(const BpImageInput *input, BpImage **image, BpError *err);
     } formats[] = {{{0x89, 'P', 'N', 'G'}, 4, bp_image_read_png},
+                   {{0xff, 0xd8, 0xff}, 3, bp_image_read_jpeg},
                    {{0x76, 0x2f, 0x31, 0x01}, 4, bp_image_read_exr},
                    {{'P', 'F'}, 2, bp_image_read_pfm},
                    {{'P', 'f'}, 2, bp_image_read_pfm},
@@ -40,7 +41,8 @@ BpStatus bp_image_read(FILE *stream, uint64_t size, const char *path, BpEncoding
     rewind(stream);
     for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
         if (count < formats[i].count || memcmp(first, formats[i].first, formats[i].count) != 0) continue;
-        if (encoding == BP_ENCODING_SRGB && formats[i].read != bp_image_read_png)
+        if (encoding == BP_ENCODING_SRGB && formats[i].read != bp_image_read_png &&
+            formats[i].read != bp_image_read_jpeg)
             return bp_image_fail(&input, err,
                                  "found an EXR, PFM or Radiance file, whose numbers are linear, expected no "
                                  "\"encoding\": \"srgb\"; remove it");

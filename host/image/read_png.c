@@ -5,11 +5,10 @@
  * chunks gAMA and cHRM, which are followed, or by sRGB. The colour spaces of ICC profiles and of cICP are not
  * known here: such numbers are taken for sRGB's, which is noted unless they are. The order of these chunks is
  * that of the PNG specification (third edition, 2023, section 4.3). */
+#include "camera_notes.h"
 #include "primaries.h"
 #include "reader.h"
 
-#include "base/color.h"
-#include "base/message_text.h"
 #include "base/plural.h"
 
 #include <math.h>
@@ -82,15 +81,6 @@ typedef struct PngColors {
     BpPrimaries primaries; /* of `converted` */
 } PngColors;
 
-/* Whether an ICC profile calls itself sRGB, in ASCII or in UTF-16. */
-static bool is_srgb_profile(const unsigned char *profile, size_t size) {
-    for (size_t i = 0; i + 4 <= size; i++)
-        if (memcmp(profile + i, "sRGB", 4) == 0 ||
-            (i + 7 <= size && memcmp(profile + i, "s\0R\0G\0B", 7) == 0))
-            return true;
-    return false;
-}
-
 /* Whether a chunk that is not applied has the last word on colours; it is noted unless it says sRGB. */
 static bool has_other_space(PngReader *reader) {
     png_unknown_chunkp chunks = NULL;
@@ -110,11 +100,7 @@ static bool has_other_space(PngReader *reader) {
         return true;
     }
     if (png_get_iCCP(reader->png, reader->info, &name, &compression, &profile, &size) == 0) return false;
-    if (!is_srgb_profile(profile, size)) {
-        char shown[80];
-        bp_printable(name, shown, sizeof shown);
-        bp_texels_note(reader->image, "its ICC profile \"%s\" is not applied: read as sRGB", shown);
-    }
+    bp_note_profile(reader->image, name, profile, size);
     return true;
 }
 
@@ -136,53 +122,6 @@ static void read_colors(PngReader *reader, PngColors *colors) {
     colors->converted = (png_get_color_type(reader->png, reader->info) & PNG_COLOR_MASK_COLOR) != 0 &&
                         png_get_cHRM(reader->png, reader->info, &p->white[0], &p->white[1], &p->red[0],
                                      &p->red[1], &p->green[0], &p->green[1], &p->blue[0], &p->blue[1]) != 0;
-}
-
-static unsigned long exif_number(const png_byte *bytes, int count, bool big_first) {
-    unsigned long value = 0;
-    for (int i = 0; i < count; i++) value = value << 8 | bytes[big_first ? i : count - 1 - i];
-    return value;
-}
-
-/* The orientation in Exif data (a TIFF file's first directory), from 1, rows as they are stored, to 8; 0: it
- * has none. */
-static unsigned exif_orientation(const png_byte *data, size_t size) {
-    enum { HEAD = 8, ENTRY = 12, TAG = 0x0112 };
-    if (size < HEAD) return 0;
-    const bool big_first = data[0] == 'M';
-    const size_t directory = exif_number(data + 4, 4, big_first);
-    if (directory < HEAD || directory + 2 > size) return 0;
-    const size_t count = exif_number(data + directory, 2, big_first);
-    for (size_t i = 0; i < count && directory + 2 + (i + 1) * ENTRY <= size; i++) {
-        const png_byte *const entry = data + directory + 2 + i * ENTRY;
-        if (exif_number(entry, 2, big_first) == TAG) return (unsigned)exif_number(entry + 8, 2, big_first);
-    }
-    return 0;
-}
-
-/* Cameras store rows as their sensor lies, and note how it was held. */
-static void note_orientation(PngReader *reader) {
-    png_bytep data = NULL;
-    png_uint_32 size = 0;
-    if (png_get_eXIf_1(reader->png, reader->info, &size, &data) == 0) return;
-    const unsigned orientation = exif_orientation(data, size);
-    if (orientation < 2 || orientation > 8) return;
-    bp_texels_note(reader->image, "its Exif orientation, %u, is not applied: read %s", orientation,
-                   orientation == 3                       ? "upside down"
-                   : orientation == 6 || orientation == 8 ? "turned by 90 degrees"
-                   : orientation == 2                     ? "mirrored"
-                                                          : "mirrored and turned");
-}
-
-/* Linear light of all numbers of `bits` bits; see PngColors for `exponent`. */
-static float *light_of_numbers(int bits, double exponent) {
-    const size_t count = (size_t)1 << bits;
-    float *light = malloc(count * sizeof *light);
-    for (size_t i = 0; light != NULL && i < count; i++) {
-        const double share = (double)i / (double)(count - 1);
-        light[i] = (float)(exponent == 0 ? bp_linear_from_srgb(share) : pow(share, exponent));
-    }
-    return light;
 }
 
 /* Numbers beyond the palette are black, as in most programs. */
@@ -256,7 +195,7 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
     if (row_bytes != width * texel_bytes ||
         (reader->palette == NULL && reader->channels != 3 && reader->channels != 4))
         png_error(png, "unexpected kind of pixels");
-    reader->light = light_of_numbers(wide ? 16 : 8, colors.exponent);
+    reader->light = bp_light_of_numbers(wide ? 16 : 8, colors.exponent);
     reader->bytes = calloc(interlaced ? height : 1, row_bytes);
     if (reader->bytes != NULL && interlaced) reader->rows = malloc(height * sizeof *reader->rows);
     if (reader->light == NULL || reader->bytes == NULL || (interlaced && reader->rows == NULL))
@@ -272,7 +211,10 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
         store_row(reader, interlaced ? reader->rows[row] : reader->bytes, row, wide);
     }
     png_read_end(png, info);
-    note_orientation(reader);
+    png_bytep exif = NULL;
+    png_uint_32 exif_size = 0;
+    if (png_get_eXIf_1(png, info, &exif_size, &exif) != 0)
+        bp_note_orientation(reader->image, exif, exif_size);
     if (reader->warning[0] != '\0' && reader->input->encoding == BP_ENCODING_OF_FORMAT)
         bp_texels_note(reader->image, "its colours may be wrong, since a chunk is not used (%s)",
                        reader->warning);

@@ -18,12 +18,13 @@ typedef struct BpImageInput {
     FILE *stream;        /* at its beginning */
     uint64_t size;       /* in bytes */
     const char *path;    /* for messages */
-    BpEncoding encoding; /* of a PNG's numbers: as the file says, or as the scene does */
+    BpEncoding encoding; /* of a PNG's or a JPEG's numbers: as the file says, or as the scene does */
     uint64_t texels_max;
 } BpImageInput;
 
 /* The formats; what they return is not finished (bp_texels_finish). */
 BpStatus bp_image_read_png(const BpImageInput *input, BpImage **image, BpError *err);
+BpStatus bp_image_read_jpeg(const BpImageInput *input, BpImage **image, BpError *err);
 BpStatus bp_image_read_exr(const BpImageInput *input, BpImage **image, BpError *err);
 BpStatus bp_image_read_pfm(const BpImageInput *input, BpImage **image, BpError *err);
 BpStatus bp_image_read_hdr(const BpImageInput *input, BpImage **image, BpError *err);
@@ -33,5 +34,8 @@ BpStatus bp_image_fail(const BpImageInput *input, BpError *err, const char *form
 /* An image of the size in a header, which is untrusted. */
 BpStatus bp_image_allocate(const BpImageInput *input, uint64_t width, uint64_t height, BpImage **image,
                            BpError *err);
+/* What each number of `bits` bits, from 0 to 2^bits - 1, stands for as linear light: a power of its share, or
+ * for exponent 0 what sRGB's curve makes of it. To be freed; NULL: no memory. */
+float *bp_light_of_numbers(int bits, double exponent);
 
 #endif

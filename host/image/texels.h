@@ -25,7 +25,7 @@ enum { BP_IMAGE_NOTES_SIZE = 512 };
 
 /* The encoding of light in the numbers of a file. */
 typedef enum BpEncoding {
-    BP_ENCODING_OF_FORMAT, /* the format's own: PNG is sRGB, others are linear */
+    BP_ENCODING_OF_FORMAT, /* the format's own: PNG and JPEG are sRGB, others are linear */
     BP_ENCODING_SRGB,
     BP_ENCODING_LINEAR
 } BpEncoding;

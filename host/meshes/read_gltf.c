@@ -8,6 +8,7 @@
 #include "reader.h"
 
 #include "base/format.h"
+#include "base/known_file.h"
 #include "base/message_text.h"
 #include "base/plural.h"
 #include "gltf_data.h"
@@ -237,10 +238,9 @@ static BpStatus read_map(const Gltf *g, const json_t *texture, const char *place
     return BP_OK;
 }
 
-/* The image of a material's base colour: a file beside the document, or one inside of it, if that is a PNG.
+/* The image of a material's base colour: a file beside the document, or one inside of it.
  * Says nothing of what fails. */
 static BpStatus read_base_image(Gltf *g, const json_t *texture, const char *place, BpMeshMaterial *material) {
-    static const unsigned char png[4] = {0x89, 'P', 'N', 'G'};
     enum { CLAMP_TO_EDGE = 33071 };
     size_t number = 0, source = 0, sampler = 0, wrap = 0;
     bool found = false, sampled = false;
@@ -258,7 +258,7 @@ static BpStatus read_base_image(Gltf *g, const json_t *texture, const char *plac
     BP_TRY(gltf_image(&g->data, source, &image, NULL));
     free(material->image_file);
     material->image_file = image.name;
-    if (image.length > sizeof png && memcmp(image.bytes, png, sizeof png) == 0)
+    if (image.length > 0 && bp_is_picture(image.bytes, image.length))
         material->image_inside = (uint32_t)source + 1;
     else if (image.name == NULL)
         g->no_images++;
@@ -326,7 +326,7 @@ static void note_textures(const Gltf *g) {
         used += material->image_file != NULL || material->image_inside > 0;
     }
     if (g->no_images > 0)
-        mesh_note(g->builder->mesh, "%s texture%s of base colours left out, since only PNG is read",
+        mesh_note(g->builder->mesh, "%s texture%s of base colours left out, since only PNG and JPEG are read",
                   bp_format_whole(g->no_images, number, sizeof number), bp_plural(g->no_images));
     if (length_of(g, "textures") > used + g->no_images)
         mesh_note(g->builder->mesh, "%s",

@@ -15,6 +15,7 @@ import zlib
 
 import samples
 from cli import ProgramTest, main
+from jpeg import jpeg
 from pfm import read_pfm
 
 CORNERS = [[corner >> axis & 1 for axis in range(3)] for corner in range(8)]
@@ -260,7 +261,9 @@ class Meshes(ProgramTest):
         self.write("two words.png", painting)
         os.mkdir(self.path("maps"))
         self.write("maps/a.png", painting)
-        self.write("a.jpg", b"\xff\xd8\xff\xe0 no PNG")
+        self.write("a.gif", b"GIF89a no PNG")
+        photo = jpeg(5, 3, lambda x, y: [100 + 20 * x, 200 - 30 * y, 80 + 10 * x + 20 * y])
+        self.write("b.jpg", photo)
         places = [(-1, 0, 0), (1, 0, 0), (1, 1.5, 0), (-1, 1.5, 0)]
         square = "mtllib m.mtl\n" + "".join("v %g %g %g\n" % p for p in places) + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl paint\n"
         faces = "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n"
@@ -279,9 +282,13 @@ class Meshes(ProgramTest):
             self.assert_same(self.picture("a.obj", "--width", 40, "--spp", 4), expected, line)
             if says is not None:
                 self.assertIn(says, self.succeed("scene", "a.obj").errors)
+        self.write("m.mtl", "newmtl paint\nmap_Kd b.jpg\n")
+        of_photo = self.picture("a.obj", "--width", 40, "--spp", 4)
+        self.assert_different(of_photo, expected)
+        self.assertEqual(json.loads(self.succeed("scene", "a.obj").stdout)["textures"], {"paint": {**plain, "file": "b.jpg"}})
         self.write("m.mtl", "newmtl paint\nmap_Kd -clamp on sub.png\n")
         self.assertEqual(json.loads(self.succeed("scene", "a.obj").stdout)["textures"]["paint"]["wrap"], "clamp")
-        for line, content, why in (("map_Kd gone.png", square + faces, "no such file that is a PNG"), ("map_Kd a.jpg", square + faces, "no such file that is a PNG"),
+        for line, content, why in (("map_Kd gone.png", square + faces, "no such file that is a PNG"), ("map_Kd a.gif", square + faces, "no such file that is a PNG"),
                                    ("map_Kd sub.png", square + faces.replace("3/3\n", "3\n"), "not all of its faces have texture coordinates")):
             self.write("m.mtl", f"newmtl paint\n{line}\n")
             self.write("b.obj", content)
@@ -314,8 +321,12 @@ class Meshes(ProgramTest):
         self.assertEqual(json.loads(self.succeed("scene", "g.json").stdout)["textures"]["paint"]["image"], 0)
         self.assertEqual(of(None, 0.5)["textures"]["paint"]["scale"], 0.5)
         self.assertEqual(of(None, wrap=33071)["textures"]["paint"]["wrap"], "clamp")
-        self.assertNotIn("textures", of(None, content=b"\xff\xd8\xff\xe0 no PNG"))
-        self.assertIn("1 texture of base colours left out, since only PNG is read", self.succeed("scene", "a.glb").errors)
+        document = of(None, content=photo)
+        document["materials"]["paint"] = {"type": "lambertian", "albedo": {"texture": "paint"}}
+        self.write("g.json", document)
+        self.assert_same(self.picture("g.json", "--width", 40, "--spp", 4), of_photo)
+        self.assertNotIn("textures", of(None, content=b"GIF89a no PNG"))
+        self.assertIn("1 texture of base colours left out, since only PNG and JPEG are read", self.succeed("scene", "a.glb").errors)
         # What is inside of a file.
         of("sub.png")
         for number, says in ((0, 'found image 0 in the file "sub.png"'), (1, "images"), (-1, "found -1")):

@@ -77,6 +77,11 @@ def texture_cells(*names):
     return Script("tests/textures/test_texture_cells.py", names, "9 textures")
 
 
+def image_files(*names):
+    """Tests of tests/textures/test_image_files.py."""
+    return Script("tests/textures/test_image_files.py", tuple(f"ImageFiles.test_{name}" for name in names), "9 textures")
+
+
 def images(*names):
     """Tests of tests/textures/test_images.py."""
     return Script("tests/textures/test_images.py", tuple(f"Images.test_{name}" for name in names), "9 textures")
@@ -1493,6 +1498,15 @@ MUTANTS = [
            [patch("host/film/film_scene.c", "brightest = brightest_lamp = largest(scene->environment->bound);", "(void)0;")], [lamp_case("74.1")]),
     Mutant("sRGB taken for light", "classic: textures too bright",
            [patch("host/image/read_png.c", "exponent == 0 ? bp_linear_from_srgb(share)", "exponent == 0 ? share")], [images("srgb_and_scale")]),
+    Mutant("numbers of a JPEG taken for light", "classic: textures too bright",
+           [patch("host/image/read_jpeg.c", "reader->input->encoding == BP_ENCODING_LINEAR ? 1 : 0", "1")], [image_files("jpeg_colors")]),
+    Mutant("half a JPEG is grey", "classic: the library only warns of a file that ends too early",
+           [patch("host/image/read_jpeg.c", "if (level < 0 && code", "if (level < -1 && code")], [image_files("jpeg_refused")]),
+    Mutant("the profile of a JPEG is overlooked", "formats: its markers are not kept",
+           [patch("host/image/read_jpeg.c", "jpeg_save_markers(jpeg, JPEG_APP0 + 2, 0xffff);", "(void)0;")], [image_files("jpeg_colors")]),
+    Mutant("a JPEG that is a picture of others", "formats: glTF's images by the first bytes of PNG alone",
+           [patch("host/base/known_file.c", '{{BP_FILE_PICTURE, "a JPEG picture"}', '{{BP_FILE_IMAGE, "a JPEG picture"}')],
+           [Script("tests/meshes/test_mesh_scenes.py", ("Meshes.test_images_of_materials",), "1 exact")]),
     Mutant("a PFM from the top", "classic: its rows upside down",
            [patch("host/image/read_pfm.c", "image->texels[3 * width * row + i]", "image->texels[3 * width * (image->height - 1 - row) + i]")],
            [images("formats")]),

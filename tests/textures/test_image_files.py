@@ -8,6 +8,7 @@ import struct
 import zlib
 
 from cli import ProgramTest, main, scene
+from jpeg import jpeg
 from pfm import read_pfm
 from test_images import images
 
@@ -408,13 +409,14 @@ class ImageFiles(ProgramTest):
         self.assertEqual(said, "")
         self.assertEqual(self.texel("a.png", png([places(p3)], [(128,)], kind=0))[1], "")
 
+    @staticmethod
+    def exif(order, value, tag=0x0112):
+        entries = [struct.pack(order + "HHIHH", 0x010f, 3, 1, 8, 0), struct.pack(order + "HHIHH", tag, 3, 1, value, 0)]
+        return (b"MM\0*" if order == ">" else b"II*\0") + struct.pack(order + "IH", 8, len(entries)) + b"".join(entries) + bytes(4)
+
     def test_png_orientation(self):
         """Exif data of both byte orders, before and behind the texels; damaged data has no orientation."""
-        srgb = [linear(v) for v in (188, 100, 30)]
-
-        def exif(order, value, tag=0x0112):
-            entries = [struct.pack(order + "HHIHH", 0x010f, 3, 1, 8, 0), struct.pack(order + "HHIHH", tag, 3, 1, value, 0)]
-            return (b"MM\0*" if order == ">" else b"II*\0") + struct.pack(order + "IH", 8, len(entries)) + b"".join(entries) + bytes(4)
+        srgb, exif = [linear(v) for v in (188, 100, 30)], self.exif
 
         for order in "<>":
             for value, says in ((1, ""), (2, "mirrored"), (3, "read upside down"), (4, "mirrored and turned"), (6, "turned by 90 degrees"),
@@ -432,6 +434,59 @@ class ImageFiles(ProgramTest):
                 self.assert_near(self.texel("a.png", png([(b"eXIf", exif(order, 6)[:size])]))[0], srgb, 5e-6)
             for far in (exif(order, 6)[:4] + b"\xff" * 4 + exif(order, 6)[8:], exif(order, 6)[:8] + b"\xff\xff" + exif(order, 6)[10:]):
                 self.assert_near(self.texel("a.png", png([(b"eXIf", far)]))[0], srgb, 5e-6)
+
+    # ---- JPEG ----------------------------------------------------------------------------------------------
+
+    def test_jpeg(self):
+        """Grey and colours, whole and halved, in one scan and in several: the picture of the bytes that were packed, to two of 255."""
+        noisy = lambda x, y: [round(255 * share(x, y, c)) for c in range(3)]
+        smooth = lambda x, y: [100 + 6 * x, 200 - 9 * y, 80 + 3 * x + 5 * y]
+        for width, height in ((WIDTH, HEIGHT), (17, 9)):
+            for texel, options in ((noisy, {}), (noisy, {"progressive": True}), (noisy, {"gray": True}), (noisy, {"gray": True, "progressive": True}),
+                                   (smooth, {"halve": True}), (smooth, {"halve": True, "progressive": True})):
+                bytes_of = (lambda x, y: [noisy(x, y)[0]] * 3) if options.get("gray") else texel
+                right = self.around("right.pfm", images.pfm(width, height, lambda x, y: [linear(v) for v in bytes_of(x, y)]))[0]
+                found, said = self.around("a.jpg", jpeg(width, height, texel, **options))
+                self.assertEqual(said, "")
+                off = [abs(a - b) for one, other in zip(found, right) for a, b in zip(read_pfm(one)[2], read_pfm(other)[2], strict=True)]
+                self.assertLess(max(off), 5 / 255 if options.get("halve") else 2 * 2.3 / 255, options)
+                self.assertLess(sum(off) / len(off), 0.006 if options.get("halve") else 0.003, options)
+
+    def test_jpeg_colors(self):
+        """Numbers are sRGB's unless the scene says otherwise; profiles and orientations are named."""
+        color = (188, 100, 30)
+        srgb, one = [linear(v) for v in color], lambda *markers: jpeg(1, 1, lambda x, y: color, markers=markers)
+        icc = lambda text: (0xe2, b"ICC_PROFILE\0\1\1" + self.profile(text))
+        exif = lambda order, value: (0xe1, b"Exif\0\0" + self.exif(order, value))
+        for markers, says in (([], ""), ([icc(b"sRGB IEC61966-2.1")], ""), ([icc("sRGB".encode("utf-16-be"))], ""),
+                              ([icc(b"Adobe RGB (1998)")], "its ICC profile is not applied: read as sRGB"),
+                              ([exif("<", 6)], "its Exif orientation, 6, is not applied: read turned by 90 degrees"),
+                              ([(0xe1, b"http://ns.adobe.com/xap/1.0/\0<x/>"), exif(">", 3)], "its Exif orientation, 3, is not applied: read upside down"),
+                              ([exif(">", 1)], ""), ([(0xe1, b"Exif\0\0")], ""), ([(0xe1, b"Exif\0\0MM\0*\0\0")], ""), ([(0xfe, b"a comment")], "")):
+            found, said = self.texel("a.jpg", one(*markers))
+            self.assert_near(found, srgb, 0.008, markers)
+            self.assertIn(says, said)
+            self.assertEqual(said == "", says == "", said)
+        self.assert_near(self.texel("a.jpg", one(), encoding="srgb")[0], srgb, 0.008)
+        found, said = self.texel("a.jpg", one(icc(b"Adobe RGB (1998)")), encoding="linear")
+        self.assert_near(found, [v / 255 for v in color], 0.008)
+        self.assertEqual(said, "")
+
+    def test_jpeg_refused(self):
+        """What the library would fill with grey is refused, by how many rows are whole; so is what has no colours that are known here."""
+        whole = jpeg(16, 64, lambda x, y: [(x * y * 7 + 31 * c) % 256 for c in range(3)])
+        frame = whole.index(b"\xff\xc0")
+        huge = whole[:frame + 5] + struct.pack(">HH", 8000, 9000) + whole[frame + 9:]
+        larger = whole[:frame + 5] + struct.pack(">HH", 65500, 65500) + whole[frame + 9:]
+        for content, says in ((whole[:len(whole) // 2], "a damaged JPEG file: Premature end of JPEG file; "), (whole[:-2], "64 of 64 rows could be read"),
+                              (whole[:40], "a JPEG file that cannot be read"), (whole[:3], "a JPEG file that cannot be read"),
+                              (whole[:-400] + b"\xff\xd9", "a damaged JPEG file: Corrupt JPEG data: premature end of data segment; "), (huge, "expected at least 35156 for 9000 by 8000 texels"),
+                              (larger, "expected at least"), (jpeg(8, 8, lambda x, y: (1, 2, 3), channels=4), "of four inks (CMYK)"),
+                              (whole[:frame + 1] + b"\xc9" + whole[frame + 2:], "of arithmetic coding"),
+                              (whole[:frame + 4] + b"\x0c" + whole[frame + 5:], "a JPEG file that cannot be read: ")):
+            self.write("a.jpg", content)
+            self.write("s.json", scene(background={"image": "a.jpg"}))
+            self.fail_with(2, "render", "s.json", "-o", "x.png", says=["a.jpg: found ", says])
 
     def test_png_alpha(self):
         """It changes no colour, and a note counts the texels that it would make transparent."""

@@ -189,7 +189,7 @@ class Images(ProgramTest):
     def test_refused(self):
         png, pfm, exr = images.png(WIDTH, HEIGHT, colours), images.pfm(WIDTH, HEIGHT, shares), images.exr(WIDTH, HEIGHT, shares)
         self.refused("none.png", None, "s.json:1:", "textures.t.file", "No such file")
-        self.refused("a.txt", b"hello", "found a text, expected an image", "PNG, OpenEXR, PFM or Radiance (.hdr)", "an image of s.json:1:")
+        self.refused("a.txt", b"hello", "found a text, expected an image", "PNG, JPEG, OpenEXR, PFM or Radiance (.hdr)", "an image of s.json:1:")
         self.refused("a.png", b"", "found an empty file")
         self.refused("a.png", png[:60], "found a damaged PNG file")
         self.refused("a.png", png[:40] + b"?" + png[41:], "found a damaged PNG file")

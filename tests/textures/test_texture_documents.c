@@ -184,7 +184,7 @@ static void refused_with_place_and_remedy(void **state) {
          {"textures.squares.period: found 0", "length of a wave"}},
         {ONE(NOISE ", \"pattern\": \"marble\", \"distortion\": -1"),
          {"textures.squares.distortion: found -1", "0 to 1000"}},
-        {ONE(IMAGE), {"textures.squares: found no \"file\"", "PNG, EXR, PFM or Radiance"}},
+        {ONE(IMAGE), {"textures.squares: found no \"file\"", "PNG, JPEG, EXR, PFM or Radiance"}},
         {ONE(IMAGE ", \"file\": 1"), {"textures.squares.file: found 1", "text"}},
         {ONE(IMAGE ", \"file\": \"none.png\""), {"textures.squares.file: \"none.png\"", "cannot open"}},
         {ONE(IMAGE ", \"file\": \".\""), {"textures.squares.file: \".\"", "found a directory"}},
