@@ -394,11 +394,14 @@ BpStatus bp_node_require(const BpNode *object, const char *name, const char *exp
     return bp_node_fail(object, BP_PART_VALUE, err, "found no \"%s\", expected %s", name, expected);
 }
 
-/* The name that is probably meant; none that the object has already. */
-static const char *nearest_absent(const BpNode *node, const char *name, const char *const *names,
+/* The name that is probably meant. In a text it is none that the object has already; a change may well be of
+ * such a one. */
+static const char *nearest_member(const BpNode *node, const BpNode *unknown, const char *const *names,
                                   size_t count) {
-    const char *const nearest = bp_nearest_name(name, names, count);
-    return nearest != NULL && json_object_get(node->value, nearest) == NULL ? nearest : NULL;
+    const char *const nearest = bp_nearest_name(unknown->member, names, count);
+    if (nearest == NULL || (is_written(unknown) && json_object_get(node->value, nearest) != NULL))
+        return NULL;
+    return nearest;
 }
 
 BpStatus bp_node_object(const BpNode *node, const char *const *names, size_t name_count, BpError *err) {
@@ -411,7 +414,7 @@ BpStatus bp_node_object(const BpNode *node, const char *const *names, size_t nam
         while (i < name_count && strcmp(name, names[i]) != 0) i++;
         if (i < name_count) continue;
         const BpNode unknown = bp_node_member(node, name);
-        const char *nearest = nearest_absent(node, name, names, name_count);
+        const char *nearest = nearest_member(node, &unknown, names, name_count);
         if (nearest != NULL)
             return bp_node_fail(&unknown, BP_PART_NAME, err, "unknown member; did you mean \"%s\"?", nearest);
         char list[384] = "";

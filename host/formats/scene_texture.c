@@ -4,6 +4,8 @@
 #include "base/words.h"
 #include "scene_image.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,6 +49,7 @@ static unsigned sorts_of(const BpTexture *texture) {
     return bp_texture_types[texture->type].has | mapping | (bp_texture_has_waves(texture) ? OF_WAVES : 0);
 }
 
+#define PI 3.14159265358979323846
 #define TYPES_SIZE 128
 
 /* "\"checker\" or \"noise\"": the types that have this; 0: all. */
@@ -63,6 +66,21 @@ static const char *list_types(unsigned what, char text[TYPES_SIZE]) {
                                      bp_texture_type_names[t]),
                 left--;
     return text;
+}
+
+/* The book's checker_texture and noise_texture have a scale; this says what becomes of it. */
+static BpStatus refuse_scale(const BpNode *scale, const BpTexture *texture, BpError *err) {
+    const double book = json_number_value(scale->value); /* 0 if it is no number */
+    const bool checker = texture->type == BP_TEXTURE_CHECKER;
+    const bool marble = texture->type == BP_TEXTURE_NOISE && texture->pattern == BP_PATTERN_MARBLE;
+    char instead[128] = "remove it";
+    if (isfinite(1 / book) && book > 0 && texture->mapping == BP_MAPPING_SOLID)
+        snprintf(instead, sizeof instead, "the book's scale of %.6g is \"%s\": %.6g here", book,
+                 marble ? "period" : "size", checker ? book : (marble ? 2 * PI : 1) / book);
+    return bp_node_fail(scale, BP_PART_NAME, err,
+                        "found in a texture that has no use for it, expected only in one of the type "
+                        "\"image\"; %s",
+                        instead);
 }
 
 static BpStatus refuse_foreign_members(const BpNode *node, const BpTexture *texture, BpError *err) {
@@ -94,6 +112,7 @@ static BpStatus refuse_foreign_members(const BpNode *node, const BpTexture *text
         const BpNode member = bp_node_member(node, members[i].name);
         if (member.value == NULL || (members[i].sort & sorts) != 0) continue;
         char types[TYPES_SIZE];
+        if (strcmp(members[i].name, "scale") == 0) return refuse_scale(&member, texture, err);
         if (members[i].owners == NULL)
             return bp_node_fail(&member, BP_PART_NAME, err,
                                 "found in a texture that has no use for it, expected only in one of the type "

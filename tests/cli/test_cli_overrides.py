@@ -71,6 +71,8 @@ class Set(ProgramTest):
     def test_wrong(self):
         for given, says in [
             ("camera.vfow=30", ["camera.vfow: unknown member; did you mean \"vfov\"?", "(by --set camera.vfow=30)"]),
+            # One that the scene has as well: it was to be overridden.
+            ("camera.max_detph=30", ["camera.max_detph: unknown member; did you mean \"max_depth\"?"]),
             ("camera.vfov=300", ["camera.vfov: found 300, expected degrees above 0 and below 180"]),
             ("camera.vfov=wide", ["found the text \"wide\", expected a number"]),
             ("camera.vfov=.5", ["--set camera.vfov=.5: the value is not JSON"]),

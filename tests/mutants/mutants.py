@@ -1629,6 +1629,10 @@ MUTANTS = [
     Mutant("totals beyond what a file holds", "this program: a merge that could not be read",
            [patch("host/film/film.c", "return a > INT64_MAX || b > INT64_MAX - a;", "return a > INT64_MAX && b > INT64_MAX;")],
            [test("test_film_sums", "overflow_is_out_of_reach")]),
+    # ---- what messages propose -------------------------------------------------------------------------------
+    Mutant("a checker's scale taken for a frequency", "classic: the book's two textures mean opposite things by it",
+           [patch("host/formats/scene_texture.c", "checker ? book : (marble", "(marble")],
+           [test("test_texture_documents", "refused_with_place_and_remedy")]),
     # ---- what is read ----------------------------------------------------------------------------------------
     Mutant("bytes after a byte of value 0", "jansson takes it for the end",
            [patch("host/formats/document.c", "    if (nul != NULL)\n", "    if (nul != NULL && length == 0)\n")],

@@ -165,6 +165,17 @@ static void refused_with_place_and_remedy(void **state) {
         {ONE(OVER ", \"repeat\": [0, 1]"), {"textures.squares.repeat[0]: found 0", "from 1 to 65536"}},
         {ONE(OVER ", \"repeat\": [1, 1.5]"), {"textures.squares.repeat[1]: found 1.5", "whole number"}},
         {ONE(CHECKER ", \"origin\": [0, 0, 2e12]"), {"textures.squares.origin: found 2000000000000", "1e12"}},
+        /* The book's textures have a scale: that of a checker is a size, that of noise a frequency, of marble
+           in radians. */
+        {ONE(CHECKER ", \"scale\": 0.32"),
+         {"textures.squares.scale: found in a texture", "the book's scale of 0.32 is \"size\": 0.32 here"}},
+        {ONE(NOISE ", \"scale\": 4"), {"textures.squares.scale: found", "scale of 4 is \"size\": 0.25 here"}},
+        {ONE(NOISE ", \"pattern\": \"turbulence\", \"scale\": 4"),
+         {"textures.squares.scale: found", "scale of 4 is \"size\": 0.25 here"}},
+        {ONE(NOISE ", \"pattern\": \"marble\", \"scale\": 4"),
+         {"textures.squares.scale: found", "scale of 4 is \"period\": 1.5708 here"}},
+        {ONE(NOISE ", \"scale\": 0"), {"textures.squares.scale: found", "of the type \"image\"; remove it"}},
+        {ONE(OVER ", \"scale\": 2"), {"textures.squares.scale: found", "of the type \"image\"; remove it"}},
         {ONE(CHECKER ", \"octaves\": 2"),
          {"textures.squares.octaves: found in a texture", "of the type \"noise\""}},
         {ONE(NOISE ", \"mapping\": \"solid\""),
