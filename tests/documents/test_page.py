@@ -16,6 +16,8 @@ import subprocess
 import sys
 import tempfile
 
+from png import read_png
+
 # Runs a script once for each task of its array, one after the other, in the place of Slurm.
 SBATCH = """#!/bin/bash
 script=${!#}
@@ -25,6 +27,33 @@ for task in $(seq "$last"); do
 done
 """
 SRUN = "#!/bin/sh\nexec \"$@\"\n"
+
+
+def size_of(folder, name):
+    """(width, height, bits, channels) and the chunks by name."""
+    width, height, bits, channels, _, chunks = read_png((folder / name).read_bytes())
+    return (width, height, bits, channels), dict(chunks)
+
+
+def look_at_guide(folder):
+    """What the page says of its pictures, and no command prints."""
+    for name, wanted in {"small.png": (400, 225, 8, 3), "scene.png": (400, 225, 8, 3), "noise.png": (400, 279, 8, 3),
+                         "figure.png": (992, 744, 16, 3), "clear.png": (400, 300, 8, 4),
+                         "turn/shell-0023.png": (320, 240, 8, 3), "path/scene-23.png": (320, 180, 8, 3)}.items():
+        found, chunks = size_of(folder, name)
+        assert found == wanted, f"{name}: {found}"
+        if name == "figure.png":
+            assert chunks["pHYs"] == (11811).to_bytes(4, "big") * 2 + b"\1", "figure.png is not of 300 dpi"
+            text = b"".join(body for chunk, body in read_png((folder / name).read_bytes())[5] if chunk in ("tEXt", "iTXt"))
+            assert b"ballpark render" in text, "figure.png does not say how it was made"
+    assert len(list((folder / "turn").iterdir())) == 24 and len(list((folder / "path").iterdir())) == 24
+    assert (folder / "parallel.exr").read_bytes()[:4] == b"v/1\1"
+    assert "<html" in (folder / "cost.html").read_text(encoding="utf-8")[:500]
+    alphas = read_png((folder / "clear.png").read_bytes())[4]
+    assert alphas[0][3] == 0 and max(row[4 * x + 3] for row in alphas for x in range(400)) == 255
+
+
+LOOK_AT = {"GUIDE.md": look_at_guide}
 
 
 def blocks(text):
@@ -69,6 +98,8 @@ def run_page(program, page, kept):
                 pattern = re.escape(plain(line)).replace(re.escape("..."), ".*?")
                 assert re.search(pattern, plain(result.stdout)), \
                     f"{page.name}: \"{line}\" is not in what these commands print:\n{commands}\n{result.stdout}"
+        if page.name in LOOK_AT:
+            LOOK_AT[page.name](folder)
     for tool in sorted(left_out):
         print(f"skipped: a block of commands needs {tool}")
     print(f"{page.name}: {len(found)} blocks of commands")
