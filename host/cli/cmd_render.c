@@ -247,6 +247,7 @@ static BpStatus prepare(Run *run, const BpCommandLine *line, Job *job, Work *wor
     BpWaiting *waiting = NULL;
     job->checkpoint.is_shared = run->comm != NULL;
     job->checkpoint.is_elsewhere = !bp_comm_is_root(run->comm);
+    BP_TRY(bp_result_check_text(line, &job->file, job->scene, err));
     BP_TRY(bp_preview_choose(line, run->comm, job->scene, &job->file, &work->preview, err));
     BP_TRY_GOTO(status, bp_resume_load(line, run->comm, &work->resumed, err), done);
     if (work->resumed != NULL)

@@ -1,6 +1,7 @@
 /* document_change.c: see document_change.h. */
 #include "document_change.h"
 
+#include "base/escape.h"
 #include "base/json_memory.h"
 #include "json_advice.h"
 
@@ -29,6 +30,9 @@ static BpStatus read_value(const char *set, const char *text, json_t **value, Bp
     json_error_t error;
     bool no_memory = false;
     if (text[0] == '\0') return fail(set, err, "found no value, expected one behind the \"=\"");
+    for (const char *at = text; *at != '\0'; at += bp_utf8_length(at))
+        if (bp_utf8_length(at) == 0)
+            return fail(set, err, "found bytes that are not UTF-8; write the value in that encoding");
     *value = bp_json_load(text, strlen(text), JSON_DECODE_ANY | JSON_REJECT_DUPLICATES, &error, &no_memory);
     if (*value == NULL && !no_memory && json_error_code(&error) == json_error_numeric_overflow)
         *value = bp_json_load(text, strlen(text),

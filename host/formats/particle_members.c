@@ -192,8 +192,24 @@ static BpStatus read_range(const BpNode *node, BpParticleStyle *style, BpError *
     return BP_OK;
 }
 
+/* What is written beside the colour bar. */
+static BpStatus read_beside_bar(const BpNode *node, bool has_bar, char *text, size_t size, BpError *err) {
+    const char *found = "";
+    char expected[64];
+    if (node->value == NULL) return BP_OK;
+    BP_TRY(bp_node_string(node, &found, err));
+    if (!has_bar)
+        return bp_node_fail(node, BP_PART_NAME, err,
+                            "found without \"bar\": true, which draws the colour bar that it belongs to");
+    snprintf(expected, sizeof expected, "a text of 1 to %zu bytes", size - 1);
+    if (found[0] == '\0' || strlen(found) >= size) return bp_node_wrong(node, expected, err);
+    memcpy(text, found, strlen(found) + 1);
+    return BP_OK;
+}
+
 static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError *err) {
-    static const char *const names[] = {"by", "column", "value", "map", "range", "bar", "types"};
+    static const char *const names[] = {"by",  "column", "value", "map",  "range",
+                                        "bar", "label",  "unit",  "types"};
     static const char object[] =
         "an object such as { \"column\": \"charge\", \"map\": \"viridis\", \"range\": [-1, 1] } or "
         "{ \"types\": { \"A\": [0.5, 0.1, 0.1] } }";
@@ -218,6 +234,7 @@ static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError 
     const BpNode map = bp_node_member(node, "map"), range = bp_node_member(node, "range");
     const BpNode bar = bp_node_member(node, "bar"), types = bp_node_member(node, "types");
     const BpNode value = bp_node_member(node, "value");
+    const BpNode label = bp_node_member(node, "label"), unit = bp_node_member(node, "unit");
     BP_TRY(check_alone(&by, &column, &value, err));
     if (column.value == NULL && value.value == NULL &&
         (map.value != NULL || range.value != NULL || bar.value != NULL))
@@ -245,6 +262,8 @@ static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError 
     style->map = (BpColormap)choice;
     BP_TRY(read_range(&range, style, err));
     BP_TRY(bp_node_boolean(&bar, &style->bar, err));
+    BP_TRY(read_beside_bar(&label, style->bar, style->label, sizeof style->label, err));
+    BP_TRY(read_beside_bar(&unit, style->bar, style->unit, sizeof style->unit, err));
     return read_named(&types, true, style->colors, &style->color_count, err);
 }
 

@@ -8,6 +8,7 @@
 #include "scene_camera.h"
 #include "scene_capsules.h"
 #include "scene_faults.h"
+#include "scene_figure.h"
 #include "scene_fit.h"
 #include "scene_material.h"
 #include "scene_medium.h"
@@ -111,7 +112,7 @@ BpStatus bp_parse_scene(const BpNode *root, const BpSceneChanges *changes, BpSce
     static const char *const names[] = {
         "format",         "title",     "source",  "camera", "background", "backdrop", "lighting", "transfer",
         "textures",       "materials", "spheres", "clouds", "particles",  "$schema",  "media",    "medium",
-        "shadow_catcher", "triangles", "quads",   "boxes",  "meshes",     "capsules"};
+        "shadow_catcher", "triangles", "quads",   "boxes",  "meshes",     "capsules", "figure"};
     BP_TRY(refuse_other_shapes(root, err));
     const BpNode former = bp_node_member(root, "light");
     if (former.value != NULL)
@@ -141,6 +142,8 @@ BpStatus bp_parse_scene(const BpNode *root, const BpSceneChanges *changes, BpSce
     BP_TRY(bp_parse_backdrop(&backdrop, scene, err));
     const BpNode catcher = bp_node_member(root, "shadow_catcher");
     BP_TRY(bp_parse_shadow_catcher(&catcher, scene, err));
+    const BpNode figure = bp_node_member(root, "figure");
+    BP_TRY(bp_parse_figure(&figure, scene, err));
     BP_TRY(bp_parse_lighting(root, changes->lighting, scene, err));
     BP_TRY(bp_parse_textures(&textures, changes->flags, scene, err));
     BP_TRY(bp_parse_media(&media, scene, err));

@@ -10,6 +10,7 @@
 #include "particles/add_to_scene.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,17 +23,21 @@ typedef struct Entry {
 } Entry;
 
 static void keep_range(const BpParticleStyle *style, const double range[2], BpScene *scene) {
-    enum { STOPS = sizeof scene->legend.colors / sizeof scene->legend.colors[0] };
+    BpColorBar *const bar = &scene->figure.bar;
     scene->has_color_range = true;
     memcpy(scene->color_range, range, sizeof scene->color_range);
     if (!style->bar) return;
-    scene->legend.shown = true;
-    memcpy(scene->legend.title, style->color_column, sizeof scene->legend.title);
-    memcpy(scene->legend.range, range, sizeof scene->legend.range);
-    for (int i = 0; i < STOPS; i++) {
+    const char *const label = style->label[0] != '\0' ? style->label : style->color_column;
+    bar->shown = true;
+    if (style->unit[0] != '\0')
+        snprintf(bar->label, sizeof bar->label, "%s (%s)", label, style->unit);
+    else
+        snprintf(bar->label, sizeof bar->label, "%s", label);
+    memcpy(bar->range, range, sizeof bar->range);
+    for (int i = 0; i < BP_COLOR_BAR_STOPS; i++) {
         double color[3];
-        bp_particle_style_map(style, i / (double)(STOPS - 1), color);
-        for (int c = 0; c < 3; c++) scene->legend.colors[i][c] = (float)color[c];
+        bp_particle_style_map(style, i / (double)(BP_COLOR_BAR_STOPS - 1), color);
+        for (int c = 0; c < 3; c++) bar->colors[i][c] = (float)color[c];
     }
 }
 

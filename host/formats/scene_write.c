@@ -218,6 +218,26 @@ static void put_backdrop(FILE *out, const BpScene *scene) {
     fputs(" }", out);
 }
 
+static BpStatus put_figure(FILE *out, const BpFigure *figure, BpError *err) {
+    const char *joint = ",\n  \"figure\": { ";
+    if (figure->font[0] != '\0') {
+        fprintf(out, "%s\"font\": ", joint);
+        BP_TRY(put_text(out, figure->font, err));
+        joint = ", ";
+    }
+    if (figure->points > 0) {
+        fprintf(out, "%s\"size\": ", joint);
+        put_number(out, figure->points);
+        joint = ", ";
+    }
+    if (figure->text != BP_TEXT_AUTO) {
+        fprintf(out, "%s\"text\": \"%s\"", joint, bp_figure_text_names[figure->text]);
+        joint = ", ";
+    }
+    if (joint[1] == ' ') fputs(" }", out);
+    return BP_OK;
+}
+
 /* ---- textures, materials and spheres
  * ------------------------------------------------------------------------------
  */
@@ -506,6 +526,7 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     put_backdrop(out, scene);
     put_shadow_catcher(out, &scene->shadow_catcher);
     fprintf(out, ",\n  \"transfer\": \"%s\"", bp_transfer_names[scene->transfer]);
+    BP_TRY(put_figure(out, &scene->figure, err));
     if (scene->texture_count > 0) BP_TRY(put_textures(out, scene, err));
     if (scene->medium_count > 0) BP_TRY(put_media(out, scene, err));
     if (written_materials(scene) > 0) BP_TRY(put_materials(out, scene, err));

@@ -29,7 +29,12 @@ typedef enum BpColorBy {
     BP_COLOR_COLUMN
 } BpColorBy;
 
-enum { BP_STYLE_NAMED_MAX = 128, BP_STYLE_NAME_SIZE = 256 };
+enum {
+    BP_STYLE_NAMED_MAX = 128,
+    BP_STYLE_NAME_SIZE = 256,
+    BP_STYLE_LABEL_SIZE = 192,
+    BP_STYLE_UNIT_SIZE = 56
+};
 
 /* The value of one element or type, instead of its default. */
 typedef struct BpStyleNamed {
@@ -52,7 +57,9 @@ typedef struct BpParticleStyle {
     BpColormap map;
     bool has_range;
     double range[2];
-    bool bar; /* a legend is wanted */
+    bool bar;                        /* a colour bar is wanted */
+    char label[BP_STYLE_LABEL_SIZE]; /* beside it; "": the name of the column */
+    char unit[BP_STYLE_UNIT_SIZE];   /* of its numbers; "": none is written */
     BpStyleNamed colors[BP_STYLE_NAMED_MAX];
     size_t color_count;
     bool bonds;         /* drawn as capsules */

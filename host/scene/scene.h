@@ -18,6 +18,7 @@
 
 #include "ballpark.h"
 #include "bodies.h"
+#include "figure/figure.h"
 #include "image/texels.h"
 #include "material.h"
 #include "medium.h"
@@ -175,14 +176,6 @@ typedef struct BpShapeFile {
     bool of_particles; /* among meshes: particles of this file that are no spheres */
 } BpShapeFile;
 
-/* The legend of particles that are coloured by a column. */
-typedef struct BpLegend {
-    bool shown;
-    char title[64];
-    double range[2];
-    float colors[256][3]; /* linear, from the least value to the most */
-} BpLegend;
-
 struct BpScene {
     char *path; /* where it came from, for messages */
     char *title, *source;
@@ -240,7 +233,7 @@ struct BpScene {
     size_t particle_first;    /* the spheres from here on come from "particles"; with sphere_count 0: 0 */
     size_t implicit_material; /* of particles that name none: into materials[]; SIZE_MAX: there is none */
     bool has_particles;
-    BpLegend legend; /* of the last particles that ask for one */
+    BpFigure figure; /* its bar is of the last particles that ask for one */
     bool has_color_range;
     double color_range[2]; /* of the column that gives the last particles' colours */
     int up;                /* the axis that the particles' world has up: 1 y, 2 z */

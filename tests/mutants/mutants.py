@@ -37,6 +37,11 @@ def particle_scenes(*names):
     return Script("tests/particles/test_particle_scenes.py", tuple(f"Scenes.test_{name}" for name in names), "1 exact")
 
 
+def color_bar(*names):
+    """Tests of tests/cli/test_cli_color_bar.py, such as Text.test_unicode."""
+    return Script("tests/cli/test_cli_color_bar.py", names, "1 exact")
+
+
 def selections(*names):
     """Tests of tests/particles/test_select_scenes.py."""
     return Script("tests/particles/test_select_scenes.py", tuple(f"Selections.test_{name}" for name in names), "1 exact")
@@ -191,7 +196,7 @@ def patch(path, find, replace):
 
 # A patch of kernel text names no file: the text must stand exactly once in all of kernels/.
 KERNEL, PACK, TRANSFER = "kernels", "host/packed/pack.c", "host/image/transfer.c"
-BOUNDARIES = "host/packed/boundaries.c"
+BOUNDARIES, FIGURE = "host/packed/boundaries.c", "host/figure/draw.c"
 SHINING = "kernels/light/triangle_lamps.cl"
 MAP = "kernels/texture/triangle_map.cl"
 FOLD, BENT = "kernels/bsdf/fold.cl", "kernels/integrator/smooth_surface.cl"
@@ -2404,4 +2409,34 @@ MUTANTS = [
            [patch("host/film/film_scene.c", "hash = mix_interior(hash, scene, scene->sphere_count + i);", "")], [body_cases("films")]),
     Mutant("lights begin outside of all bodies", "media in bodies: paths from lamps in smoke fly through clear air",
            [patch(KERNEL, "path->bodies = bodies_beyond(scene, hit->slot, vbool_not(hit->enters), leaves_no_shape, path->bodies);", "")], [body_cases("unseen_light")]),
+    Mutant("a pixel for a point", "text beside pictures: sizes at 72 dots per inch whatever is asked for",
+           [patch("host/figure/cairo/ballpark_text.c", "page->points / points * PANGO_SCALE", "page->points * PANGO_SCALE")],
+           [color_bar("Text.test_points_are_points")]),
+    Mutant("letters on whole pixels", "text beside pictures: the outlines are hinted",
+           [patch("host/figure/cairo/ballpark_text.c", "CAIRO_HINT_STYLE_NONE", "CAIRO_HINT_STYLE_FULL")],
+           [color_bar("Text.test_points_are_points")]),
+    Mutant("black on black", "text beside pictures: the paper is not looked at",
+           [patch(FIGURE, "page->is_clear || bp_transfer_byte(luminance, page->transfer) >= 128", "page->is_clear || luminance >= 0")],
+           [color_bar("Text.test_ink_on_paper")]),
+    Mutant("ink by radiance", "text beside pictures: a grey of 0.4 is taken for dark",
+           [patch(FIGURE, "bp_transfer_byte(luminance, page->transfer) >= 128", "luminance >= 0.5")], [color_bar("Text.test_ink_on_paper")]),
+    Mutant("letters without a rim", "text beside pictures: black letters of a transparent picture on a black page",
+           [patch(FIGURE, "work->page->is_clear && work->figure->text == BP_TEXT_AUTO", "false")], [color_bar("Text.test_transparent")]),
+    Mutant("a seam of exposure", "text beside pictures: the margin is not exposed",
+           [patch("host/cli/output/result_file.c", "bottom[c] * exp2(line->exposure)", "bottom[c]")], [color_bar("Text.test_exposure_and_transfer")]),
+    Mutant("margins blended twice", "text beside pictures: what nothing is drawn over is rounded to 8 bits",
+           [patch(FIGURE, "    if (cover == 0) return;\n", "")], [color_bar("Text.test_it_stays_with_16_bits")]),
+    Mutant("labels that touch", "text beside pictures: marks of the finest step",
+           [patch("host/figure/layout.c", "1.8 * plan->line / length", "0.5 * plan->line / length")], [test("test_layout", "nothing_overlaps")]),
+    Mutant("labels beyond the edge", "text beside pictures: the marks at the ends have no room",
+           [patch("host/figure/layout.c", "ceil(fmax(plan->outside, plan->thin))", "ceil(plan->thin)")], [test("test_layout", "nothing_overlaps")]),
+    Mutant("an upside-down bar", "text beside pictures: the least value stands at the top",
+           [patch("host/figure/layout.c", "end + (1 - layout->ticks[t].share) * length", "end + layout->ticks[t].share * length")],
+           [test("test_layout", "marks_are_level_with_their_values")]),
+    Mutant("one decimal too few", "text beside pictures: 0.25 is written as 0.3",
+           [patch("host/figure/ticks.c", "style.exponent > least ? style.exponent - least : 0", "style.exponent > least + 1 ? style.exponent - least - 1 : 0")],
+           [test("test_ticks", "labels_say_where_they_stand")]),
+    Mutant("text is looked for after the render", "text beside pictures: a missing module is found when the picture is written",
+           [patch("host/cli/cmd_render.c", "    BP_TRY(bp_result_check_text(line, &job->file, job->scene, err));\n", "")],
+           [color_bar("Text.test_what_does_not_fit_is_said")]),
 ]

@@ -36,6 +36,7 @@ from mutants import MUTANTS, Check, Lister, Program, Script
 
 SURVIVED, KILLED, ERROR = "SURVIVED", "killed", "ERROR"
 RUN_LONG = ("test_lobes", "test_kernel_samplers", "tests/unseen/test_unseen_means.py")  # longer than they compile
+TEXT_MODULE = "ballpark_text.so"
 LONGEST = 10  # mutants, that whoever adds a long one sees it
 
 
@@ -72,6 +73,8 @@ class Bench:
         self.cache = os.path.join(folder, "cache")
         os.mkdir(self.cache)
         self.environment = {**os.environ, **environment_of(self.cache)}
+        if os.path.exists(os.path.join(build, TEXT_MODULE)):  # a relinked program has another folder
+            self.environment["BALLPARK_TEXT"] = os.path.join(build, TEXT_MODULE)
         with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
             self.compile = {os.path.realpath(e["file"]): e for e in json.load(file)}
 
@@ -113,6 +116,13 @@ class Bench:
         words = [word for word in words if word not in objects]
         library = next(i for i, w in enumerate(words) if w.endswith("libballpark.a"))
         words[library:library] = objects.values()
+        subprocess.run(words, cwd=self.build, check=True, capture_output=True, text=True, errors="replace")
+        return made
+
+    def relink_module(self, objects):
+        """The module that draws text, of other objects. Returns its path."""
+        words = [objects.get(word, word) for word in self.link_command(TEXT_MODULE)]
+        made = words[words.index("-o") + 1] = os.path.join(self.scratch, TEXT_MODULE)
         subprocess.run(words, cwd=self.build, check=True, capture_output=True, text=True, errors="replace")
         return made
 
@@ -220,6 +230,10 @@ class Bench:
     def run(self, trial, environment, objects):
         way = {Check: self.run_check, Script: self.run_script, Program: self.run_program, Lister: self.run_lister}.get(type(trial), self.run_test)
         target = f"tests/{trial.program}" if hasattr(trial, "program") else "ballpark"
+        of_module = {old: new for old, new in dict(objects).items() if "/ballpark_text.dir/" in old}
+        if of_module:  # the program stays
+            environment = {**environment, "BALLPARK_TEXT": self.relink_module(of_module)}
+            objects = {old: new for old, new in objects.items() if old not in of_module}
         program = self.relink(target, objects) if objects else os.path.join(self.build, target)
         if getattr(trial, "program", getattr(trial, "path", "")) in RUN_LONG:
             environment = {**environment, "POCL_EXTRA_BUILD_FLAGS": ""}

@@ -343,26 +343,6 @@ class Scenes(ProgramTest):
         for name in ("b.csv", "x.json"):
             self.assert_same(self.picture("a.csv"), self.picture(name), name)
 
-    def test_colour_bar(self):
-        self.write("a.csv", "x,y,z,heat\n" + "".join(f"{i},{i % 3},0,{i}\n" for i in range(11)))
-        pictures = {}
-        for bar in (True, False):
-            for output in ("x.ppm", "x.pfm"):
-                self.document_with({"file": "a.csv", "color": {"column": "heat", "bar": bar}}, background=[1, 1, 1], transfer="srgb",
-                                   camera={"image_width": 200, "aspect_ratio": 1.5, "fit": "particles"})
-                self.succeed("render", "x.json", "-q", "--spp", 1, "-o", output)
-                pictures[bar, output] = self.read(output)
-        self.assertEqual(pictures[True, "x.pfm"], pictures[False, "x.pfm"])  # floats stay what was rendered
-        plain, barred = pictures[False, "x.ppm"], pictures[True, "x.ppm"]
-        self.assertEqual(len(plain), len(barred))
-        width, height, head = 200, 133, len(plain) - 3 * 200 * 133
-        changed = {i // 3 % width for i, (a, b) in enumerate(zip(plain[head:], barred[head:])) if a != b}
-        self.assertGreater(min(changed), 150)  # at the right side alone
-        colours = {bytes(barred[head + 3 * i:head + 3 * i + 3]) for i in range(width * height)}
-        # The ends of viridis, dimmed by 0.9, as sRGB: about (65, 1, 80) and (241, 220, 35).
-        for end in ((65, 1, 80), (241, 220, 35)):
-            self.assertTrue(any(max(abs(a - b) for a, b in zip(end, colour)) <= 4 for colour in colours), end)
-
     def test_fit(self):
         """Nothing lit touches the margin, and the picture is filled."""
         self.write("a.csv", "x,y,z,radius\n" + "".join(f"{math.sin(i)},{math.cos(i)},{i / 9},0.2\n" for i in range(40)))

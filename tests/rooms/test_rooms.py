@@ -10,11 +10,12 @@ import sys
 MAY_INCLUDE = {
     "base": set(),
     "image": set(),
-    "scene": {"image"},
+    "figure": {"image"},
+    "scene": {"image", "figure"},
     "expressions": set(),
     "particles": {"scene", "expressions"},
     "meshes": {"particles"},
-    "formats": {"image", "scene", "expressions", "particles", "meshes"},
+    "formats": {"image", "figure", "scene", "expressions", "particles", "meshes"},
     "packed": {"image", "scene"},
     "opencl": {"packed"},
     "film": {"scene"},
@@ -28,7 +29,7 @@ MAY_INCLUDE = {
     "cli/line": {"scene", "formats", "film"},
     "cli/terminal": {"image", "cli/line"},
     "cli/process": {"opencl", "cli/line", "cli/terminal"},
-    "cli/output": {"scene", "film", "image", "render", "cli/line", "cli/terminal"},
+    "cli/output": {"scene", "film", "image", "figure", "render", "cli/line", "cli/terminal"},
     "cli/job": {"scene", "formats", "packed", "opencl", "film", "image", "cluster", "render", "cli/line", "cli/terminal",
                 "cli/process", "cli/output"},
     "cli/conform": {"formats", "packed", "opencl", "render", "check", "cli/line", "cli/terminal", "cli/process",
@@ -38,6 +39,7 @@ MAY_INCLUDE = {
     # Modules, which are built apart.
     "cluster/mpi": {"cluster"},
     "view/sdl": {"view"},
+    "figure/cairo": {"figure"},
 }
 
 

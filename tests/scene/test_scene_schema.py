@@ -22,6 +22,7 @@ GOOD = {
     "lighting": "sky",
     "backdrop": {"bottom": [0, 0, 0], "top": [1, 1, 1]},
     "shadow_catcher": {"height": -1.5, "up": [0, 0, 2]},
+    "figure": {"font": "Arial Bold", "size": 7.5, "text": "white"},
     "triangles": [{"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "normals": [[0, 0, 2], [-1, 0, 1], [0, 1e-3, 0]], "uvs": [[0, 0], [-1e6, 0.5], [1, 1]], "material": "m", "interior": "m"}],
     "quads": [{"corner": [0, 0, 0], "u": [1, 0, 0], "v": [0, 1e9, 0], "material": "m", "interior": "m"}],
     "boxes": [{"corners": [[0, 0, 0], [1, 1, 1]], "rotate": [0, 15, 0], "translate": [1, 2, 3], "material": "m", "interior": "m"}, {"corners": [[0, 0, 0], [1, 1, 1]], "material": "m"}],
@@ -60,7 +61,7 @@ GOOD = {
                   {"file": "b.pdb", "radius": "covalent", "color": "chain"},
                   {"file": "b.pdb", "radius": {"types": {"A": 1}}, "color": {"types": {"A": [1, 0, 0]}}},
                   {"file": "b.pdb", "select": "chain == A", "radius": {"value": "2 * radius"},
-                   "color": {"value": "norm(x, y)", "map": "plasma", "range": [0, 1], "bar": True}}],
+                   "color": {"value": "norm(x, y)", "map": "plasma", "range": [0, 1], "bar": True, "label": "r", "unit": "Å"}}],
 }
 
 # Where, and what is put there. None: the member is removed.
@@ -73,6 +74,9 @@ BAD = [
     (["background", "discs", 0, "half_angle"], None), (["background", "discs", 0, "radiance"], [1, -1, 1]),
     (["background", "discs", 0, "radiance"], None), (["background", "discs", 0, "visible_to_camera"], 1),
     (["background", "discs", 0, "angle"], 1), (["background", "discs"], [{"direction": [0, 1, 0], "half_angle": 1, "radiance": [1, 1, 1]}] * 33),
+    (["figure"], 7), (["figure", "font"], 1), (["figure", "size"], 0.9), (["figure", "size"], 145), (["figure", "text"], "red"), (["figure", "colour"], 1),
+    (["particles", 3, "color", "label"], ""), (["particles", 3, "color", "unit"], 1), (["particles", 3, "color", "bar"], False),
+    (["particles", 3, "color", "bar"], None),
     (["shadow_catcher"], "yes"), (["shadow_catcher", "height"], 2e12), (["shadow_catcher", "up"], [0, 0, 0]), (["shadow_catcher", "down"], 1),
     (["lighting"], "sun"), (["backdrop"], "nothing"), (["backdrop"], {"bottom": [0, 0, 0]}), (["backdrop", "top"], [0, 0, -1]), (["backdrop", "up"], [0, 1, 0]),
     (["camera", "image_width"], 0), (["camera", "image_width"], 1e9), (["camera", "image_width"], 1.5),

@@ -32,6 +32,7 @@ GLASS = {"type": "dielectric", "refraction_index": 1.5}
 PLACES = [
     ("lighting", "bp_lighting_names", {"lighting": ALIEN}),
     ("transfer", "bp_transfer_names", {"transfer": ALIEN}),
+    ("figure text", "bp_figure_text_names", {"figure": {"text": ALIEN}}),
     ("encoding", "encoding_names", {"background": {"image": "i.png", "encoding": ALIEN}}),
     ("camera pixel_sampling", "sampling_names", {"camera": {"pixel_sampling": ALIEN}}),
     ("camera projection", "bp_projection_names", {"camera": {"projection": ALIEN}}),

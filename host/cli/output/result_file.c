@@ -8,8 +8,8 @@
 #include "base/json_text.h"
 #include "cli/terminal/page.h"
 #include "content.h"
+#include "figure/draw.h"
 #include "film/film_file.h"
-#include "image/color_bar.h"
 #include "image/depth_cues.h"
 #include "image/error_map.h"
 #include "image/image.h"
@@ -247,6 +247,40 @@ static BpStatus draw_cues(const BpCommandLine *line, const BpScene *scene, BpPic
     return bp_depth_cues_draw(picture, &cues, err);
 }
 
+/* What is written beside the picture; NULL: nothing. */
+static const BpFigure *figure_of(const BpScene *scene, const BpResultFile *result) {
+    const bool has_text = scene != NULL && bp_figure_has_text(&scene->figure) && is_encoded(result->format);
+    return has_text ? &scene->figure : NULL;
+}
+
+/* Margins continue a backdrop of one colour; beside any other picture they are white. */
+static BpFigurePage page_of(const BpCommandLine *line, const BpScene *scene, BpTransfer transfer) {
+    BpFigurePage page = {.dots_per_inch = bp_option_given(line, BP_OPTION_DPI) ? line->dpi : BP_FIGURE_DPI,
+                         .transfer = transfer,
+                         .is_clear = scene->backdrop == BP_BACKDROP_NONE,
+                         .paper = {1, 1, 1}};
+    const double *const bottom = scene->backdrop_bottom, *const top = scene->backdrop_top;
+    bool is_even = scene->backdrop == BP_BACKDROP_COLORS;
+    for (int c = 0; c < 3; c++) is_even = is_even && !(bottom[c] < top[c]) && !(bottom[c] > top[c]);
+    for (int c = 0; c < 3 && is_even; c++) page.paper[c] = bottom[c] * exp2(line->exposure);
+    return page;
+}
+
+BpStatus bp_result_check_text(const BpCommandLine *line, const BpResultFile *result, const BpScene *scene,
+                              BpError *err) {
+    const BpFigure *const figure = figure_of(scene, result);
+    const uint32_t size[2] = {scene->camera.width, scene->camera.height};
+    uint32_t whole[2];
+    char notes[2048];
+    if (figure == NULL) return BP_OK;
+    const BpTransfer transfer = bp_option_given(line, BP_OPTION_TRANSFER) ? line->transfer : scene->transfer;
+    const BpFigurePage page = page_of(line, scene, transfer);
+    BP_TRY(bp_figure_measure(figure, &page, size, whole, notes, sizeof notes, err));
+    for (char *note = strtok(notes, "\n"); note != NULL; note = strtok(NULL, "\n"))
+        bp_say(line, "warning: %s", note);
+    return BP_OK;
+}
+
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
                          bool rendered, BpTransfer transfer, const BpScene *scene, BpError *err) {
     BpStatus status = BP_OK;
@@ -257,19 +291,17 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
                           .deep = line->bit_depth != NULL && strcmp(line->bit_depth, "16") == 0};
     Metadata metadata = {.command_text = NULL};
     if (line->metadata) BP_TRY_GOTO(status, make_metadata(line, film, &metadata, &extra, err), done);
-    const BpLegend *const legend =
-        scene != NULL && scene->legend.shown && is_encoded(result->format) ? &scene->legend : NULL;
+    const BpFigure *const figure = figure_of(scene, result);
+    BpFigurePage page = {0};
+    if (figure != NULL) page = page_of(line, scene, transfer);
+    if (figure != NULL && result->format == BP_FORMAT_PNG) extra.dots_per_inch = page.dots_per_inch;
     /* The map shows the errors of the render, not of lines drawn over it. */
-    const bool apart = legend != NULL || bp_result_has_cues(line) || line->exposure != 0;
+    const bool apart = figure != NULL || bp_result_has_cues(line) || line->exposure != 0;
     if (is_picture || has_map) BP_TRY_GOTO(status, bp_film_picture(film, &picture, err), done);
     if (has_map && apart) BP_TRY_GOTO(status, bp_film_picture(film, &undrawn, err), done);
     BP_TRY_GOTO(status, draw_cues(line, scene, &picture, err), done);
     if (is_picture) bp_picture_expose(&picture, line->exposure);
-    if (legend != NULL)
-        BP_TRY_GOTO(status,
-                    bp_color_bar_draw(&picture, transfer, (const float(*)[3])legend->colors, legend->range,
-                                      legend->title, err),
-                    done);
+    if (figure != NULL) BP_TRY_GOTO(status, bp_figure_draw(figure, &page, &picture, err), done);
     if (rendered && picture.alpha != NULL && is_picture && result->format != BP_FORMAT_PNG &&
         result->format != BP_FORMAT_EXR)
         bp_say(line, "%s has no alpha: transparent parts are black; .png and .exr keep it",

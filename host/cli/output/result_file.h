@@ -32,9 +32,14 @@ void bp_result_say_overwritten(const BpCommandLine *line, const BpResultFile *re
 /* Turns --width-mm and --dpi into --width. BP_ERR_USAGE: they do not go together, or give no picture. */
 BpStatus bp_result_take_width(BpCommandLine *line, BpError *err);
 
+/* Loads what draws text where the picture will have some (figure.h), and warns of what does not fit beside
+ * it. For use before the render. BP_ERR_USAGE: no text can be drawn. */
+BpStatus bp_result_check_text(const BpCommandLine *line, const BpResultFile *result, const BpScene *scene,
+                              BpError *err);
+
 /* Writes it, and the error map if there is to be one. `transfer`: unless --transfer overrides it. `rendered`:
  * the film is in no file yet, and is kept if the result cannot be written (keep_sums.h). `scene`: Optional;
- * where it shows a legend, a colour bar is drawn into pictures of 8 bits, and --depth-fog fades into its
+ * the text of its figure is drawn beside pictures of 8 bits, and --depth-fog fades into its
  * backdrop. A film of a render that has not ended may lack what outlines and fog need; then they are left
  * out. */
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
