@@ -2,6 +2,7 @@
 #include "style_bonds.h"
 
 #include "base/format.h"
+#include "base/plural.h"
 #include "scene/capsule_rules.h"
 #include "scene/vector.h"
 #include "style_colors.h"
@@ -35,15 +36,16 @@ static void say_bonds(BpStyleJob *job, size_t drawn, size_t given, size_t across
                  bp_format_whole(across, other, sizeof other));
     bp_format_whole(drawn, number, sizeof number);
     if (given == drawn && job->p->bond_count > 0)
-        bp_style_say(job, "%s bonds%s", number, beside);
+        bp_style_say(job, "%s bond%s%s", number, bp_plural(drawn), beside);
     else if (given == 0)
-        bp_style_say(job, "%s bonds by distance%s", number, beside);
+        bp_style_say(job, "%s bond%s by distance%s", number, bp_plural(drawn), beside);
     else
-        bp_style_say(job, "%s bonds, %s of them given by the file, the others by distance%s", number,
-                     bp_format_whole(given, other, sizeof other), beside);
+        bp_style_say(job, "%s bond%s, %s of them given by the file, the others by distance%s", number,
+                     bp_plural(drawn), bp_format_whole(given, other, sizeof other), beside);
     if (job->p->bonds_left_out > 0)
-        bp_style_say(job, "left out: %s connections to atoms that are missing or share their number",
-                     bp_format_whole(job->p->bonds_left_out, number, sizeof number));
+        bp_style_say(job, "left out: %s connection%s to atoms that are missing or share their number",
+                     bp_format_whole(job->p->bonds_left_out, number, sizeof number),
+                     bp_plural(job->p->bonds_left_out));
 }
 
 BpStatus bp_style_put_bonds(BpStyleJob *job, BpError *err) {

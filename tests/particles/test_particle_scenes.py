@@ -194,7 +194,7 @@ class Scenes(ProgramTest):
         self.assertEqual(self.shapes("x.json"), (2, 1))
         self.document_with({"file": "a.xyz", "bonds": True})
         self.assertEqual(self.shapes("x.json"), (2, 0))  # the balls hide all of it
-        self.assertIn("1 bonds by distance", self.notes("x.json"))
+        self.assertIn("1 bond by distance", self.notes("x.json"))
         glass = {"glass": {"type": "dielectric", "refraction_index": 1.5}}
         self.document_with({"file": "a.xyz", "bonds": True, "material": "glass"}, materials=glass)
         self.assertEqual(self.shapes("x.json"), (2, 1))  # it is seen through the balls
@@ -239,9 +239,9 @@ class Scenes(ProgramTest):
         self.document_with({"file": "a.pdb", "style": "ball-and-stick"})
         for text, says in [("", "4 bonds by distance\n"),
                            (connections, "5 bonds, 3 of them given by the file, the others by distance; "
-                                         "left out: 1 connections to atoms that are missing or share their number\n"),
+                                         "left out: 1 connection to atoms that are missing or share their number\n"),
                            ("CONECT    1    9\nCONECT    3    1    2    4    5\nCONECT    2    1\nCONECT    4    5\n", "7 bonds"),
-                           ("CONECT   50   51\n", "4 bonds by distance; left out: 1 connections")]:
+                           ("CONECT   50   51\n", "4 bonds by distance; left out: 1 connection to")]:
             self.write("a.pdb", "".join(chain) + metal + text + "END\n")
             self.assertIn(says, self.notes("x.json"))
         self.assertNotIn("bonds", self.notes("a.pdb"))  # as spheres
