@@ -2,6 +2,7 @@
 #include "film_file.h"
 
 #include "base/json_memory.h"
+#include "base/known_file.h"
 #include "base/output_file.h"
 #include "base/plural.h"
 #include "film_header.h"
@@ -88,8 +89,14 @@ static BpStatus read_header(Loader *loader, json_t **header, BpError *err) {
     json_error_t json_error;
     bool no_memory = false;
     BpStatus status = BP_OK;
+    BpKnownFile known = {.kind = BP_FILE_SUMS};
+    bp_known_file("", text, length, &known); /* by what it is: a film may have any name */
     if (ferror(loader->in))
         status = bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", loader->name, strerror(errno));
+    else if (known.kind != BP_FILE_SUMS)
+        status = bp_fail(err, BP_ERR_FILE,
+                         "%s: found %s, expected a .bpa file, as `ballpark render -o FILE.bpa` writes",
+                         loader->name, known.what);
     else if (c != '\n')
         status = bp_fail(err, BP_ERR_FILE, "%s is not a .bpa file: it does not begin with a line of JSON",
                          loader->name);

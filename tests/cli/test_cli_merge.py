@@ -34,6 +34,14 @@ class Merge(ProgramTest):
         self.assertEqual(self.succeed("merge", "a.bpa", "b.bpa", "c.bpa", "-o", "-", "--format", "pfm").stdout,
                          self.read("whole.pfm"))
 
+    def test_what_is_no_film_is_called_what_it_is(self):
+        for name, what in (("a.png", "a PNG picture"), ("a.exr", "an EXR picture"), ("a.pfm", "a PFM picture")):
+            self.part(name, 0, 1)
+            self.fail_with(1, "merge", name, "-o", "sum.png",
+                           says=f"{name}: found {what}, expected a .bpa file, as `ballpark render -o FILE.bpa` writes")
+        self.fail_with(1, "merge", "s.json", "-o", "sum.png", says="s.json is not a .bpa file")
+        self.succeed("merge", self.part("film.txt", 0, 1, "--format", "bpa"), "-o", "sum.png")  # a film by another name
+
     def test_a_gap_is_no_fault(self):
         self.part("a.bpa", 0, 4)
         self.part("b.bpa", 100, 4)

@@ -1638,6 +1638,9 @@ MUTANTS = [
     Mutant("a checker's scale taken for a frequency", "classic: the book's two textures mean opposite things by it",
            [patch("host/formats/scene_texture.c", "checker ? book : (marble", "(marble")],
            [test("test_texture_documents", "refused_with_place_and_remedy")]),
+    Mutant("a picture called by its first bytes", "this program: merge of a PNG named a byte that is no JSON",
+           [patch("host/film/film_file.c", "else if (known.kind != BP_FILE_SUMS)", "else if (known.kind > BP_FILE_SOURCE)")],
+           [Script("tests/cli/test_cli_merge.py", ("Merge.test_what_is_no_film_is_called_what_it_is",), "1 exact")]),
     # ---- what is read ----------------------------------------------------------------------------------------
     Mutant("bytes after a byte of value 0", "jansson takes it for the end",
            [patch("host/formats/document.c", "    if (nul != NULL)\n", "    if (nul != NULL && length == 0)\n")],
