@@ -248,7 +248,7 @@ static void intersect_left_triangle(const Geometry *geometry, const Ray *ray, co
 #endif
 
 /* Decides about a candidate. */
-FORCE_INLINE static void intersect_triangle(const Geometry *geometry, const Ray *ray, const Shear *shear, vbool active,
+FORCE_INLINE ON_CHAINS static void intersect_triangle(const Geometry *geometry, const Ray *ray, const Shear *shear, vbool active,
                                             const Triangle *triangle, vuint slot, Hit *hit) {
     vrefined t;
     vbool enters, doubtful;

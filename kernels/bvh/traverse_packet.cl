@@ -145,7 +145,7 @@ static void intersect_doubtful(const Geometry *geometry, const Visit *visits, ui
 #endif
 
 /* Decides about triangles that may be met, as many as there are lanes at a time. */
-static void intersect_found_triangles(const Geometry *geometry, Visit *found, uint count, LaneRays *rays) {
+ON_CHAINS static void intersect_found_triangles(const Geometry *geometry, Visit *found, uint count, LaneRays *rays) {
     uint open = 0; /* of `found`, which those take over that have been asked */
     for (uint begin = 0; begin < count; begin += LANE_COUNT) {
         LaneUints lanes, slots, decided, enter, doubtful;
@@ -196,7 +196,7 @@ static LeafShear shear_of_lane(const LaneRays *rays, uint lane) {
 }
 
 /* intersect_leaves, below, for those leaves that hold triangles. */
-static void intersect_triangle_leaves(const Geometry *geometry, const Visit *visits, uint count, LaneRays *rays) {
+ON_CHAINS static void intersect_triangle_leaves(const Geometry *geometry, const Visit *visits, uint count, LaneRays *rays) {
     Visit found[FOUND_MAX + TREE_WIDTH];
     child_mask met[LEAF_BATCH];
     uint found_count = 0;
@@ -505,7 +505,7 @@ static void store_shear(const Shear *shear, LaneRays *rays) {
 #endif
 
 /* The spheres below the first leaves, against what the rays have hit so far. */
-static void traverse_packet(const Geometry *geometry, const Ray *ray, WITH_SHEAR(const Shear *shear) vbool active, Hit *hit) {
+ON_CHAINS static void traverse_packet(const Geometry *geometry, const Ray *ray, WITH_SHEAR(const Shear *shear) vbool active, Hit *hit) {
     if (geometry->leaf_count == geometry->first_leaves) return;
     LaneRays rays;
     rays.high[0].all = ray->origin.high.x;
@@ -575,7 +575,7 @@ static void intersect_triangle_leaf(const Geometry *geometry, const Ray *ray, co
 #endif
 
 /* One leaf's spheres, one at a time, against all lanes. */
-static void intersect_leaf(const Geometry *geometry, const Ray *ray, WITH_SHEAR(const Shear *shear) vbool active,
+ON_CHAINS static void intersect_leaf(const Geometry *geometry, const Ray *ray, WITH_SHEAR(const Shear *shear) vbool active,
                            uint leaf_number, Hit *hit) {
 #if EFFECT_TRIANGLES
     if (leaf_number >= geometry->first_triangles) {
@@ -622,7 +622,7 @@ static void intersect_leaf(const Geometry *geometry, const Ray *ray, WITH_SHEAR(
 /* The closest hit of every ray that is `active`, if it is closer than what the ray has hit already. The few huge
  * spheres, which most rays meet, are tried against all lanes at once; then each lane searches the tree within the bound
  * that they leave. */
-FORCE_INLINE static Hit intersect_closer(const Geometry *geometry, const Ray *ray, vbool active, Hit hit) {
+FORCE_INLINE ON_CHAINS static Hit intersect_closer(const Geometry *geometry, const Ray *ray, vbool active, Hit hit) {
 #if SPHERES_MET
     intersect_own_sphere(geometry, ray, active, &hit);
 #endif
@@ -639,6 +639,6 @@ FORCE_INLINE static Hit intersect_closer(const Geometry *geometry, const Ray *ra
 }
 
 /* The closest hit of every ray that is `active`. */
-static Hit intersect_closest(const Geometry *geometry, const Ray *ray, vbool active) {
+ON_CHAINS static Hit intersect_closest(const Geometry *geometry, const Ray *ray, vbool active) {
     return intersect_closer(geometry, ray, active, no_hit(REAL_LARGE));
 }

@@ -2,7 +2,7 @@
  *
  * In:    a ray, the geometry.   Out: the hit of least (distance, sphere index); or whether there is any.
  * Knows: node.cl, hit.cl.   Does not know: materials, what made the ray. */
-FORCE_INLINE static void intersect_leaf(const Geometry *geometry, const Ray *ray, WITH_SHEAR(const Shear *shear) uint leaf_number,
+FORCE_INLINE ON_CHAINS static void intersect_leaf(const Geometry *geometry, const Ray *ray, WITH_SHEAR(const Shear *shear) uint leaf_number,
                                         Hit *best) {
 #if EFFECT_TRIANGLES
     if (leaf_number >= geometry->first_triangles) {
@@ -132,7 +132,7 @@ static void traverse_single(const Geometry *geometry, const Ray *ray, int any, H
 }
 
 /* The closest hit of a ray that is `active`, if it is closer than what the ray has hit already. */
-FORCE_INLINE static Hit intersect_closer(const Geometry *geometry, const Ray *ray, vbool active, Hit best) {
+FORCE_INLINE ON_CHAINS static Hit intersect_closer(const Geometry *geometry, const Ray *ray, vbool active, Hit best) {
 #if SPHERES_MET
     intersect_own_sphere(geometry, ray, active, &best);
 #endif
@@ -141,7 +141,7 @@ FORCE_INLINE static Hit intersect_closer(const Geometry *geometry, const Ray *ra
 }
 
 /* The closest hit of a ray that is `active`. */
-FORCE_INLINE static Hit intersect_closest(const Geometry *geometry, const Ray *ray, vbool active) {
+FORCE_INLINE ON_CHAINS static Hit intersect_closest(const Geometry *geometry, const Ray *ray, vbool active) {
     return intersect_closer(geometry, ray, active, no_hit(REAL_LARGE));
 }
 

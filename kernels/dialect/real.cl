@@ -1,6 +1,6 @@
 /* real.cl: the numbers that every other kernel file is written in.
  *
- * Out:   real, refined, their constants, JOIN, FORCE_INLINE, VECTORS_WRITTEN, READ_AHEAD.   Does not know: lanes (lanes.cl).
+ * Out:   real, refined, their constants, JOIN, FORCE_INLINE, ON_CHAINS, VECTORS_WRITTEN, READ_AHEAD.   Does not know: lanes (lanes.cl).
  *
  * The program's first lines (host/opencl/program.c) define:
  *   REAL_IS_DOUBLE    0 or 1: what `real` is
@@ -112,6 +112,15 @@ typedef REFINED refined;
 #define FORCE_INLINE __attribute__((always_inline))
 #else
 #define FORCE_INLINE
+#endif
+
+/* PoCL 3.1 goes through every chain of calls in a kernel, and a function more on the chains doubles them: seconds for a kernel of
+ * many effects, where the optimiser does not shorten the chains. Tests that compile without it define SHORT_CHAINS, and the
+ * functions that most chains have in common, called from one place or a few, become parts of their callers. */
+#ifdef SHORT_CHAINS
+#define ON_CHAINS __attribute__((always_inline))
+#else
+#define ON_CHAINS
 #endif
 
 /* Asks the memory for the line of a cache that contains an address, which need not exist. The language's own prefetch()

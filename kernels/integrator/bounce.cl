@@ -7,7 +7,7 @@
  * What a scene does not have is a macro of nothing, which stands in the #else of the file that has the function. */
 
 /* One segment of every living path that waits for nothing: intersect, collect radiance, scatter. */
-static void trace_bounce(const Scene *scene, Path *path) {
+ON_CHAINS static void trace_bounce(const Scene *scene, Path *path) {
     const vbool moving = path_moves(path);
     const Ray ray = path_ray(path);
     const Hit hit = intersect_closest(&scene->geometry, &ray, moving);

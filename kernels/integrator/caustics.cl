@@ -66,7 +66,7 @@ static vreal chain_hit_weight(const Scene *scene, const Path *path, vuint lamp, 
 }
 
 /* Traces the chain that leaves the vertex along `direction`, in the lanes `active`, and adds what it brings. */
-static void trace_chain(const Scene *scene, Path *path, const ChainChoice *choice, const TargetImage *image, Vec3 direction,
+ON_CHAINS static void trace_chain(const Scene *scene, Path *path, const ChainChoice *choice, const TargetImage *image, Vec3 direction,
                         vuint bounce, vbool active) {
     const Focus focus = focus_along(scene, &path->origin, &path->lobe, direction, 0, choice->number, choice->probability);
     active = active & (focus.ratio > splat(0));
@@ -84,7 +84,7 @@ static void trace_chain(const Scene *scene, Path *path, const ChainChoice *choic
 /* Finds the roots of the chain in `choice`, and adds what they bring. `aim`: the unit direction from the centre of the focuser to a
  * point of the target; `far`: its radius over the distance of that point. `u` and `v`, which have chosen that point, choose a
  * direction instead where the image of the target is near a fold or a ring. */
-static void seek_chains(const Scene *scene, Path *path, const ChainChoice *choice, Vec3 aim, vreal far, vreal u, vreal v,
+ON_CHAINS static void seek_chains(const Scene *scene, Path *path, const ChainChoice *choice, Vec3 aim, vreal far, vreal u, vreal v,
                         vuint bounce, vbool active) {
     const vuint place = choice->number * FOCUSER_REALS;
     /* A chain has a segment more than chords, and one to the lamp. */

@@ -80,7 +80,7 @@ static vrefined distance_to_lamp(const Ray *ray, const LampChoice *choice, const
 /* What a ray to the lamp meets first. Of a triangle that is decided at once. No point of the lamp that can be seen is nearer than distance - radius, nor
  * farther than where a tangent touches: what is met before the one hides the lamp, what is not met before the other
  * does not, and only in between the lamp's own root along the rounded direction has to tell, by the rule for ties. */
-static Hit first_seen(const Scene *scene, const Ray *ray, const LampChoice *choice, const LampCone *cone,
+ON_CHAINS static Hit first_seen(const Scene *scene, const Ray *ray, const LampChoice *choice, const LampCone *cone,
                       vbool active) {
     const Geometry *geometry = &scene->geometry;
     Hit lamp;

@@ -2,7 +2,7 @@
  *
  * In:    paths, their rays, and the surfaces that these hit.   Out: the end of each; what media leave of the light.
  * Knows: shadow_catcher.cl, flight.cl.   Does not know: surfaces, the sky. */
-static Segment end_segment(const Scene *scene, const Ray *ray, const Hit *hit, vbool moving, Path *path) {
+ON_CHAINS static Segment end_segment(const Scene *scene, const Ray *ray, const Hit *hit, vbool moving, Path *path) {
     Segment end;
     vreal length = to_real(hit->t);
     const vbool at_catcher = meets_catcher(scene, path, hit, moving, &length);

@@ -79,7 +79,7 @@ static vbool light_of_catcher(const Scene *scene, SampleKey key, vbool wanted, V
 }
 
 /* The lanes of `caught`, whose path meets the plane at `distance`, where it lies in shadow. */
-static vbool lies_in_shadow(const Scene *scene, const Path *path, vbool caught, vreal distance) {
+ON_CHAINS static vbool lies_in_shadow(const Scene *scene, const Path *path, vbool caught, vreal distance) {
     if (!any_lane(caught)) return vbool_none;
     Ray ray = path_ray(path);
     const vbool lit = light_of_catcher(scene, path->key, caught, &ray.direction);

@@ -60,15 +60,25 @@ def ball_stretch(each, origin, direction):
     return None if room <= 0 else ((middle - math.sqrt(room)) / square, (middle + math.sqrt(room)) / square)
 
 
-def capsule_stretch(each, origin, direction, steps=4000):
-    """By balls along the axis: each is in the capsule, and together they are nearly all of it."""
-    begin, end = math.inf, -math.inf
-    for i in range(steps + 1):
-        center = add(scale(1 - i / steps, each["ends"][0]), scale(i / steps, each["ends"][1]))
-        stretch = ball_stretch({"center": center, "radius": each["radius"]}, origin, direction)
-        if stretch:
-            begin, end = min(begin, stretch[0]), max(end, stretch[1])
-    return (begin, end) if begin < end else None
+def capsule_stretch(each, origin, direction):
+    """Of the cylinder between the ends, and of the balls there, which together are the capsule; it is convex."""
+    first, radius = each["ends"][0], each["radius"]
+    axis = add(each["ends"][1], scale(-1, first))
+    to = add(origin, scale(-1, first))
+    along, forth = dot(to, axis), dot(direction, axis)
+    aside, way = (add(v, scale(-part / dot(axis, axis), axis)) for v, part in ((to, along), (direction, forth)))
+    stretches = [ball_stretch({"center": end, "radius": radius}, origin, direction) for end in each["ends"]]
+    if dot(way, way) > 1e-20 * dot(direction, direction):
+        side = ball_stretch({"center": [0, 0, 0], "radius": radius}, aside, way)
+    else:  # along the axis
+        side = (-math.inf, math.inf) if dot(aside, aside) < radius ** 2 else None
+    if forth != 0 and side:
+        near, far = sorted((-along / forth, (dot(axis, axis) - along) / forth))
+        stretches.append((max(side[0], near), min(side[1], far)))
+    elif 0 <= along <= dot(axis, axis):
+        stretches.append(side)
+    stretches = [s for s in stretches if s and s[0] < s[1]]
+    return (min(s[0] for s in stretches), max(s[1] for s in stretches)) if stretches else None
 
 
 def volume(each):

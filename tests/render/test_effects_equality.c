@@ -92,7 +92,7 @@ static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOption
     BpStatus status = bp_render_plan(scene, options, &lab->device->info, &setup, &packed, err);
     if (status == BP_OK && *program == NULL) {
         const bool optimise = lab->optimised && setup.program.form == BP_KERNEL_PACKET;
-        setenv("POCL_EXTRA_BUILD_FLAGS", optimise ? "" : "-cl-opt-disable", 1);
+        setenv("POCL_EXTRA_BUILD_FLAGS", optimise ? "" : "-cl-opt-disable -DSHORT_CHAINS", 1);
         status = bp_program_build(lab->device, &setup.program, NULL, NULL, program, err);
     }
     if (status != BP_OK) goto done;
