@@ -1502,7 +1502,7 @@ MUTANTS = [
     Mutant("the sums do not expect an image around", "the brightest sphere alone sets the scale",
            [patch("host/film/film_scene.c", "brightest = brightest_lamp = largest(scene->environment->bound);", "(void)0;")], [lamp_case("74.1")]),
     Mutant("sRGB taken for light", "classic: textures too bright",
-           [patch("host/image/read_png.c", "exponent == 0 ? bp_linear_from_srgb(share)", "exponent == 0 ? share")], [images("srgb_and_scale")]),
+           [patch("host/image/reader.c", "exponent == 0 ? bp_linear_from_srgb(share)", "exponent == 0 ? share")], [images("srgb_and_scale")]),
     Mutant("numbers of a JPEG taken for light", "classic: textures too bright",
            [patch("host/image/read_jpeg.c", "reader->input->encoding == BP_ENCODING_LINEAR ? 1 : 0", "1")], [image_files("jpeg_colors")]),
     Mutant("half a JPEG is grey", "classic: the library only warns of a file that ends too early",
