@@ -117,7 +117,8 @@ typedef struct PackedTextureKind {
 
 /* The numbers of a material. What it scatters stands with each sphere. */
 typedef struct PackedMaterial {
-    real emit[4];
+    real emit[3];
+    real opacity;          /* in (0, 1]: the share of paths that meet the surface */
     real fuzz;             /* in [0, 1] */
     real refraction_index; /* inside over outside; for a negative radius already its reciprocal */
     real roughness;        /* in [0, 1] */
@@ -176,6 +177,7 @@ typedef struct PackedVariation {
 /* The kernel gathers members for several lanes at once, from the structs as arrays of their only type. Places
  * of members in them: */
 #define MATERIAL_EMIT 0u
+#define MATERIAL_OPACITY 3u
 #define MATERIAL_FUZZ 4u
 #define MATERIAL_INDEX 5u
 #define MATERIAL_ROUGHNESS 6u
@@ -497,6 +499,7 @@ BP_PLACE(TEXTURE_CLAMPED, PackedTextureKind, clamped, packed_uint);
 BP_PLACE(TEXTURE_MAPPING, PackedTextureKind, mapping, packed_uint);
 BP_PLACE(TEXTURE_CELL, PackedTextureKind, cell, packed_uint);
 BP_PLACE(MATERIAL_EMIT, PackedMaterial, emit, real);
+BP_PLACE(MATERIAL_OPACITY, PackedMaterial, opacity, real);
 BP_PLACE(MATERIAL_FUZZ, PackedMaterial, fuzz, real);
 BP_PLACE(MATERIAL_INDEX, PackedMaterial, refraction_index, real);
 BP_PLACE(MATERIAL_ROUGHNESS, PackedMaterial, roughness, real);

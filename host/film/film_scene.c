@@ -210,6 +210,7 @@ static uint64_t hash_material(const BpMaterial *material) {
         const BpMemberInfo *member = &bp_members[m];
         if (m == BP_MEMBER_ALBEDO || m == BP_MEMBER_EMIT || !bp_material_has(material->kind, (BpMember)m))
             continue;
+        if (m == BP_MEMBER_OPACITY && bp_material_opacity(material) == 1) continue;
         if (member->form != BP_FORM_CHOICE)
             hash = mix_reals(hash, bp_member_values_of(material, (BpMember)m),
                              member->form == BP_FORM_COLOUR ? 3 : 1);

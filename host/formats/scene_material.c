@@ -101,6 +101,9 @@ static BpStatus read_member(const BpNode *object, BpMember m, const BpScene *sce
         return bp_node_vector(&node, bp_member_values(material, m), err);
     case BP_FORM_NUMBER:
         BP_TRY(bp_node_number(&node, bp_member_values(material, m), err));
+        if (m == BP_MEMBER_OPACITY && node.value != NULL && material->opacity == 0)
+            return bp_node_fail(&node, BP_PART_VALUE, err,
+                                "found 0, expected %s: remove what has this material instead", member->range);
         if (*bp_member_values(material, m) > member->cap) *bp_member_values(material, m) = member->cap;
         return BP_OK;
     case BP_FORM_CHOICE:

@@ -243,7 +243,7 @@ static BpStatus put_figure(FILE *out, const BpFigure *figure, BpError *err) {
  */
 
 /* A member that the document may leave out is left out: a choice that is the first of its names, a colour of
- * zeros. */
+ * zeros, an opacity of 1. */
 static BpStatus put_member(FILE *out, const BpScene *scene, const BpMaterial *material, BpMember m,
                            BpError *err) {
     const BpMemberInfo *member = &bp_members[m];
@@ -256,6 +256,7 @@ static BpStatus put_member(FILE *out, const BpScene *scene, const BpMaterial *ma
     const bool needed = (bp_material_types[material->kind].needed >> m & 1u) != 0;
     const unsigned choice = member->form == BP_FORM_CHOICE ? bp_member_choice(material, m) : 0;
     if (member->form == BP_FORM_CHOICE && choice == 0) return BP_OK;
+    if (m == BP_MEMBER_OPACITY && bp_material_opacity(material) == 1) return BP_OK;
     if (member->form == BP_FORM_COLOUR && !needed && is_dark(bp_member_values_of(material, m))) return BP_OK;
     fprintf(out, ", \"%s\": ", member->name);
     switch (member->form) {

@@ -119,6 +119,7 @@ static const struct {
     {"integrator/smooth_surface.cl", IN_ALL},
     {"integrator/vary_surface.cl", IN_ALL},
     {"integrator/vertex.cl", IN_ALL},
+    {"integrator/opacity.cl", IN_ALL},
     {"medium/exponential.cl", IN_ALL},
     {"medium/flight.cl", IN_ALL},
     {"integrator/pixels.cl", IN_ALL},

@@ -403,6 +403,26 @@ static bool explain_coordinates(const BpScene *scene, size_t size, char *reason)
     return mapped > 0;
 }
 
+/* Whether a shape has a material of opacity below 1. */
+static bool explain_opacity(const BpScene *scene, size_t size, char *reason) {
+    size_t shapes = 0, materials = 0;
+    for (size_t m = 0; m < scene->material_count; ++m)
+        materials += bp_material_opacity(&scene->materials[m]) < 1;
+    for (size_t i = 0; i < bp_scene_shapes(scene) && materials > 0; ++i)
+        shapes += bp_material_opacity(&scene->materials[bp_shape_material(scene, i)]) < 1;
+    if (shapes > 0)
+        snprintf(reason, size, "%zu material%s of opacity below 1, on %zu of %zu %s%s", materials,
+                 bp_plural(materials), shapes, bp_scene_shapes(scene), bp_scene_noun(scene),
+                 bp_plural(bp_scene_shapes(scene)));
+    else if (materials > 0)
+        snprintf(reason, size, "%zu material%s %s an opacity below 1, but no %s has %s", materials,
+                 bp_plural(materials), materials == 1 ? "has" : "have", bp_scene_noun(scene),
+                 materials == 1 ? "it" : "them");
+    else
+        snprintf(reason, size, "all materials have opacity 1");
+    return shapes > 0;
+}
+
 /* Whether a path carries exactly as much after it has met a shape as before. */
 static bool passes_all(const BpScene *scene, size_t shape) {
     const BpMaterial *material = &scene->materials[bp_shape_material(scene, shape)];
@@ -480,6 +500,8 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
         effects->bits |= 1u << BP_EFFECT_TEXTURE_COORDINATES;
     if (explain_capsules(scene, size, effects->reason[BP_EFFECT_CAPSULES]))
         effects->bits |= 1u << BP_EFFECT_CAPSULES;
+    if (explain_opacity(scene, size, effects->reason[BP_EFFECT_OPACITY]))
+        effects->bits |= 1u << BP_EFFECT_OPACITY;
     effects->triangles_alone = scene->triangle_count > 0 && scene->sphere_count + scene->capsule_count == 0;
     if (!bp_effects_has(effects->bits, BP_EFFECT_LAMPS))
         snprintf(effects->reason[BP_EFFECT_CAUSTICS], size, "no rays are sent to lamps");

@@ -44,7 +44,8 @@
     X(SMOOTH_NORMALS, "smooth_normals", "triangles that look curved, by normals at their vertices", "", "")  \
     X(CAPSULES, "capsules", "capsules beside spheres: lines with a radius and round ends", "", "")           \
     X(ROULETTE, "roulette", "deep paths that carry little end by chance: Russian roulette", "", "")          \
-    X(TEXTURE_COORDINATES, "texture_coordinates", "textures laid on triangles by coordinates", "", "")
+    X(TEXTURE_COORDINATES, "texture_coordinates", "textures laid on triangles by coordinates", "", "")       \
+    X(OPACITY, "opacity", "surfaces that let a share of light straight on", "", "")
 
 typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,

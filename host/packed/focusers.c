@@ -44,9 +44,12 @@ static bool is_mirror(const BpScene *scene, size_t i) {
     return material->kind == BP_MATERIAL_METAL && !(material->fuzz > 0);
 }
 
-/* Glass whose index is nearly that of its outside bends nothing: it does not focus. */
+/* Glass whose index is nearly that of its outside bends nothing: it does not focus. Nor does, for rays to
+ * lamps, what lets a share of light straight on. */
 static bool is_focuser(const BpScene *scene, size_t i) {
-    return !bp_shape_emits(scene, i) && (is_mirror(scene, i) || bp_sphere_refraction_index(scene, i) > 1.001);
+    const BpMaterial *material = &scene->materials[scene->spheres[i].material];
+    return bp_material_opacity(material) == 1 && !bp_shape_emits(scene, i) &&
+           (is_mirror(scene, i) || bp_sphere_refraction_index(scene, i) > 1.001);
 }
 
 static double distance(const double a[3], const double b[3]) {

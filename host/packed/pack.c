@@ -297,6 +297,7 @@ static void pack_material(const BpMaterial *material, bool inside_out, PackedMat
             ((real *)numbers)[places[m] + (unsigned)a] = bp_member_values_of(material, (BpMember)m)[a];
     }
     if (material->kind == BP_MATERIAL_GLOSSY) numbers->lets_in = bp_coat_lets_in(material->refraction_index);
+    numbers->opacity = bp_material_opacity(material);
     if (inside_out) numbers->refraction_index = 1 / numbers->refraction_index;
 }
 

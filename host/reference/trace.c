@@ -1,6 +1,8 @@
 /* trace.c: intersection and the recursion; see trace.h. */
 #include "trace.h"
 
+#include "scene/material.h"
+
 #include <float.h>
 
 #define PI 3.14159265358979323846
@@ -205,6 +207,27 @@ bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit) {
     return true;
 }
 
+/* What stops the ray: each surface does by chance, and else the ray begins anew there. */
+typedef struct Sight {
+    bool meets;
+    Hit hit; /* t: from where the ray began */
+} Sight;
+
+static Sight look(const BpScene *scene, const Ray *ray, Random *random) {
+    Sight sight;
+    Ray rest = *ray;
+    double behind = 0;
+    while ((sight.meets = bp_ref_hit(scene, &rest, &sight.hit))) {
+        const Hit *hit = &sight.hit;
+        const double opacity = bp_material_opacity(hit->material);
+        if (opacity >= 1 || random_real(random) < opacity) break;
+        behind += hit->t;
+        rest = (Ray){hit->point, ray->direction, hit->sphere, ray->time, false, hit->triangle, hit->capsule};
+    }
+    sight.hit.t = sight.meets ? behind + sight.hit.t : INFINITY;
+    return sight;
+}
+
 static Vec mixed(const double bottom[3], const double top[3], double a) {
     return add(scale(1 - a, vec(bottom)), scale(a, vec(top)));
 }
@@ -279,30 +302,32 @@ static bool is_dark(const BpScene *scene, Vec point, double time, Random *random
             ray.direction = around(unit(vec(chosen->direction)), 1 - u * cap, turn);
             share = 1;
         }
-        Hit hit;
-        if (random_real(random) < share * dot(ray.direction, normal)) return bp_ref_hit(scene, &ray, &hit);
+        if (random_real(random) < share * dot(ray.direction, normal)) return look(scene, &ray, random).meets;
     }
     return false;
 }
 
 /* Whether the ray meets the upper side of the shadow catcher before any sphere. */
-static bool meets_catcher(const BpScene *scene, const Ray *ray, double *t) {
+static bool meets_catcher(const BpScene *scene, const Ray *ray, const Sight *sight, double *t) {
     if (!scene->shadow_catcher.present) return false;
     const Vec normal = vec(scene->shadow_catcher.normal);
     const double above = dot(normal, ray->origin) - scene->shadow_catcher.distance;
     const double down = -dot(normal, ray->direction);
-    Hit hit;
     if (!(above > 0 && down > 0)) return false;
     *t = above / down;
-    return !bp_ref_hit(scene, ray, &hit) || *t <= hit.t;
+    return *t <= sight->hit.t;
 }
+
+static Vec color_of(const BpScene *scene, const Ray *ray, const Sight *sight, uint32_t depth, Random *random,
+                    Path *path);
 
 Vec bp_ref_camera_color(const BpScene *scene, const Ray *ray, double height, uint32_t depth, Random *random,
                         Path *path) {
     const Vec black = {0, 0, 0};
-    Hit hit;
     double t;
-    if (depth > 0 && meets_catcher(scene, ray, &t)) {
+    if (depth == 0) return bp_ref_color(scene, ray, depth, random, path);
+    const Sight sight = look(scene, ray, random);
+    if (meets_catcher(scene, ray, &sight, &t)) {
         Ray scattered;
         Vec left;
         ++path->segments;
@@ -314,7 +339,7 @@ Vec bp_ref_camera_color(const BpScene *scene, const Ray *ray, double height, uin
                    ? black
                    : mul(left, mixed(scene->backdrop_bottom, scene->backdrop_top, height));
     }
-    if (scene->backdrop != BP_BACKDROP_SKY && depth > 0 && !bp_ref_hit(scene, ray, &hit)) {
+    if (scene->backdrop != BP_BACKDROP_SKY && !sight.meets) {
         Ray scattered;
         Vec left;
         ++path->segments;
@@ -324,7 +349,7 @@ Vec bp_ref_camera_color(const BpScene *scene, const Ray *ray, double height, uin
                    ? black
                    : mul(left, mixed(scene->backdrop_bottom, scene->backdrop_top, height));
     }
-    return bp_ref_color(scene, ray, depth, random, path);
+    return color_of(scene, ray, &sight, depth, random, path);
 }
 
 Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *random, Path *path) {
@@ -333,22 +358,28 @@ Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *r
         path->cut = true;
         return black;
     }
-    ++path->segments;
-    Hit hit;
+    const Sight sight = look(scene, ray, random);
+    return color_of(scene, ray, &sight, depth, random, path);
+}
+
+/* The radiance along a ray, from what it meets. */
+static Vec color_of(const BpScene *scene, const Ray *ray, const Sight *sight, uint32_t depth, Random *random,
+                    Path *path) {
+    const Hit *hit = &sight->hit;
     Ray flown;
     Vec left;
-    const bool meets = bp_ref_hit(scene, ray, &hit);
-    if (bp_ref_fly(scene, ray, meets ? hit.t : INFINITY, random, path, &flown, &left))
+    ++path->segments;
+    if (bp_ref_fly(scene, ray, hit->t, random, path, &flown, &left))
         return mul(left, bp_ref_color(scene, &flown, depth - 1, random, path));
-    if (!meets) return mul(left, background(scene, ray));
+    if (!sight->meets) return mul(left, background(scene, ray));
 
-    Vec emitted = bp_ref_varied(scene, &hit, BP_MEMBER_EMIT, hit.material->emit);
-    if (hit.material->kind == BP_MATERIAL_NORMALS)
-        emitted = add(emitted, scale(0.5, add(hit.normal, (Vec){1, 1, 1})));
+    Vec emitted = bp_ref_varied(scene, hit, BP_MEMBER_EMIT, hit->material->emit);
+    if (hit->material->kind == BP_MATERIAL_NORMALS)
+        emitted = add(emitted, scale(0.5, add(hit->normal, (Vec){1, 1, 1})));
     Vec direction, attenuation;
-    if (!bp_ref_scatter(scene, ray, &hit, random, &direction, &attenuation)) return mul(left, emitted);
-    direction = bp_ref_folded(&hit, direction);
-    const Ray scattered = {hit.point, direction, hit.sphere, ray->time, false, hit.triangle, hit.capsule};
+    if (!bp_ref_scatter(scene, ray, hit, random, &direction, &attenuation)) return mul(left, emitted);
+    direction = bp_ref_folded(hit, direction);
+    const Ray scattered = {hit->point, direction, hit->sphere, ray->time, false, hit->triangle, hit->capsule};
     const Vec onward = mul(attenuation, bp_ref_color(scene, &scattered, depth - 1, random, path));
     return mul(left, add(emitted, onward));
 }

@@ -21,8 +21,14 @@ BP_WORDS(BpFresnel, static const char *const bp_fresnel_names, FRESNEL_WORDS);
 BP_WORDS(BpTotalReflection, static const char *const bp_total_reflection_names, TOTAL_REFLECTION_WORDS);
 
 const BpMaterialType bp_material_types[] = {
-#define TYPE(identifier, name, kernel_kind, effect, traits, weight, members, needed, outcome)                \
-    [BP_MATERIAL_##identifier] = {name, traits, weight, (members) | BP_HAS(EMIT), needed, outcome},
+#define TYPE(identifier, name, kernel_kind, effect, traits, weight, members, needed, outcome)                 \
+    [BP_MATERIAL_##identifier] = {                                                                            \
+        name,                                                                                                 \
+        traits,                                                                                               \
+        weight,                                                                                               \
+        (members) | BP_HAS(EMIT) | (BP_MATERIAL_##identifier == BP_MATERIAL_INTERFACE ? 0 : BP_HAS(OPACITY)), \
+        needed,                                                                                               \
+        outcome},
     BP_MATERIAL_LIST(TYPE)
 #undef TYPE
 };
@@ -109,6 +115,11 @@ double bp_coat_lets_in(double index) {
         sum += (1 - 0.5 * (across * across + along * along)) * 4 * s * s * s / STEPS; /* 2 c dc */
     }
     return sum;
+}
+
+double bp_material_opacity(const BpMaterial *material) {
+    return bp_material_has(material->kind, BP_MEMBER_OPACITY) && material->opacity != 0 ? material->opacity
+                                                                                        : 1;
 }
 
 bool bp_material_is_lit(const BpMaterial *material) {

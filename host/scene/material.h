@@ -35,12 +35,16 @@ enum {
 
 #define BP_HAS(member) (1u << BP_MEMBER_##member)
 
+/* Less is not worth a surface, and rays would pass too many of them. */
+#define BP_OPACITY_MIN 0.001
+
 /* X(identifier, name, kernel's kind, effect, traits, weight, members, members that it needs, what becomes of
  * a path). `weight`: the largest weight of the kernel's lobe (kernels/bsdf/bsdf.cl) over the albedo, or over
  * 1 where it has none; the film's scale follows from it, so a sample that weighs more may be left out. Of
  * kinds of one name, a document means the last of which it has all that is needed. The kernel's kind is
  * KIND_... of scene_types.h, the effect BP_EFFECT_... of packed/effects.h. Every material may have "emit",
- * and brings in the effect EMISSION with it. */
+ * and brings in the effect EMISSION with it; and all but interfaces, which light passes as if there were
+ * none, "opacity", which below 1 brings in OPACITY. */
 #define BP_MATERIAL_LIST(X)                                                                                  \
     X(LAMBERTIAN, "lambertian", LAMBERTIAN, LAMBERTIAN, BP_SCATTERS, 1, BP_HAS(ALBEDO) | BP_HAS(SCATTER),    \
       BP_HAS(ALBEDO), "scatters it")                                                                         \
@@ -100,7 +104,8 @@ typedef enum BpMaterialKind {
     CHOICE(TOTAL_REFLECTION, "total_reflection", total_reflection, TOTAL_REFLECTION, BP_MEMBER_COUNT,        \
            bp_total_reflection_names)                                                                        \
     COLOUR(EMIT, "emit", emit, 0, BP_RADIANCE_MAX, "radiances from 0 to 1e12",                               \
-           "the light it gives, such as \"emit\": [4, 4, 4]", EMIT)
+           "the light it gives, such as \"emit\": [4, 4, 4]", EMIT)                                          \
+    NUMBER(OPACITY, "opacity", opacity, BP_OPACITY_MIN, 1, "a number from 0.001 to 1", "", OPACITY, INFINITY)
 
 typedef enum BpMember {
 #define BP_MEMBER_COLOUR(identifier, name, field, low, high, range, needed, place) BP_MEMBER_##identifier,
@@ -172,6 +177,9 @@ bool bp_material_varies(const BpMaterial *material);
 /* The share of light from all sides, by Lambert's law, that a smooth coat lets in, of Fresnel's equations;
  * `index` from 1 to BP_COAT_INDEX_MAX. Within 1e-6. */
 double bp_coat_lets_in(double index);
+
+/* The share of paths that meet its surface, from BP_OPACITY_MIN to 1; the others go straight on. */
+double bp_material_opacity(const BpMaterial *material);
 
 /* Rays to lamps light it: it scatters into many directions. */
 bool bp_material_is_lit(const BpMaterial *material);

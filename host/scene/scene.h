@@ -61,6 +61,7 @@ struct BpMaterial {
     BpFuzzShape fuzz_shape;
     double roughness;        /* of kinds that have one */
     double refraction_index; /* of the inside over the outside */
+    double opacity;          /* 0: the document says nothing, which is 1 (bp_material_opacity) */
     BpFresnel fresnel;
     BpTotalReflection total_reflection;
 };

@@ -194,6 +194,7 @@ static bool material_fault(const BpScene *scene, const BpMaterial *material, BpF
         if (!bp_material_has(material->kind, (BpMember)m) || member->form == BP_FORM_CHOICE) continue;
         if (variation_fault(scene, material, (BpMember)m, fault)) return true;
         const double *values = bp_member_values_of(material, (BpMember)m);
+        if (m == BP_MEMBER_OPACITY && *values == 0) continue; /* not given */
         if (member->form == BP_FORM_COLOUR ? any_outside(fault, BP_FAULT_MATERIAL, member->name, values,
                                                          member->low, member->high, member->range)
                                            : outside(fault, BP_FAULT_MATERIAL, member->name, *values,
@@ -210,6 +211,22 @@ static bool material_fault(const BpScene *scene, const BpMaterial *material, BpF
            outside(fault, BP_FAULT_MATERIAL, "refraction_index", material->refraction_index, 1,
                    BP_COAT_INDEX_MAX,
                    "the index of a coat over that of the air, from 1 to 10 (varnish and plastic: 1.5)");
+}
+
+/* A path that went straight on through a boundary would be in another medium at once. */
+static void boundary_fault(const BpScene *scene, BpFault *fault) {
+    for (size_t i = 0; i < scene->material_count; i++) {
+        const BpMaterial *material = &scene->materials[i];
+        if (bp_material_opacity(material) == 1 || !bp_material_is(material->kind, BP_HAS_INSIDE) ||
+            !bp_scene_has_media(scene))
+            continue;
+        fault->index = i;
+        bp_fault_set(fault, BP_FAULT_MATERIAL, "opacity",
+                     "found %g in a material that light passes into, in a scene with media, expected 1: its "
+                     "surface bounds a medium; remove the opacity, or the media",
+                     bp_material_opacity(material));
+        return;
+    }
 }
 
 bool bp_sphere_find_fault(const BpSphere *sphere, BpFault *fault) {
@@ -317,7 +334,9 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
     if (fault->subject == BP_FAULT_NONE) standpoint_fault(scene, fault);
     if (fault->subject == BP_FAULT_NONE) BP_TRY(bp_scene_find_triangle_fault(scene, fault, err));
     if (fault->subject == BP_FAULT_NONE) BP_TRY(bp_scene_find_capsule_fault(scene, fault, err));
-    return fault->subject == BP_FAULT_NONE ? bp_scene_find_body_fault(scene, fault, err) : BP_OK;
+    if (fault->subject == BP_FAULT_NONE) BP_TRY(bp_scene_find_body_fault(scene, fault, err));
+    if (fault->subject == BP_FAULT_NONE) boundary_fault(scene, fault);
+    return BP_OK;
 }
 
 BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {

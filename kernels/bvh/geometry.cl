@@ -1,6 +1,6 @@
 /* geometry.cl: the spheres, triangles and capsules of the scene and the tree above them, as packed tables.
  *
- * Knows: scene_types.h, parts.cl.   Does not know: rays, materials. */
+ * Knows: scene_types.h, parts.cl.   Does not know: rays, what materials do with light. */
 
 /* What a kernel that knows triangles is given of them, each followed by a comma. */
 #if SMOOTH_TRIANGLES
@@ -66,6 +66,10 @@ typedef struct Geometry {
 #endif
 #if EFFECT_CAPSULES
     SCENE_ARRAYS_OF_CAPSULES(SPLIT_MEMBER)
+#endif
+#if EFFECT_OPACITY
+    __global const real *materials; /* for what surfaces let straight on */
+    SPLIT_MEMBER(UINTS, packed_uint, slot_material, slots, "the table of sphere materials")
 #endif
 #if MEDIA_IN_TRIANGLES
     uint bodies; /* of triangles that light passes into: it may go on straight through a vertex of one */

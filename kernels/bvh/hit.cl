@@ -2,7 +2,7 @@
  *
  * In:    rays, spheres, triangles.   Out: the hit of least (distance, index), where spheres come before triangles, so list
  *        and tree, and any order of visits, agree to the bit.
- * Knows: the interface of shape/, geometry.cl.   Does not know: nodes, materials. Read for one lane and for packets. */
+ * Knows: the interface of shape/, geometry.cl.   Does not know: nodes, what materials do with light that they stop. Read for one lane and for packets. */
 #define Hit LANED(Hit)
 #define no_hit LANED(no_hit)
 #define is_hit LANED(is_hit)
@@ -22,6 +22,10 @@
 #define shear_at_triangles LANED(shear_at_triangles)
 #define intersect_triangle LANED(intersect_triangle)
 #define is_behind LANED(is_behind)
+#define let_through LANED(let_through)
+#if EFFECT_OPACITY
+#define enter_together LANED(enter_together)
+#endif
 #define intersect_left_triangle LANED(intersect_left_triangle)
 #define intersect_triangle_beside_sphere LANED(intersect_triangle_beside_sphere)
 #define surface_of_triangle LANED(surface_of_triangle)
@@ -207,13 +211,23 @@ static void intersect_triangle_beside_sphere(const Geometry *geometry, const Ray
 }
 #endif
 
+#if PASSES_TRIANGLES
 #if MEDIA_IN_TRIANGLES
+#define GOES_STRAIGHT(geometry, ray) ((ray)->passes | vbool_of_uint(splat_uint((geometry)->bodies) != splat_uint(0)))
+#else
+#define GOES_STRAIGHT(geometry, ray) (ray)->passes
+#endif
 /* Where triangles meet in a vertex, each may lie before the next around a saddle, and a ray that goes straight through all of
  * them would go round and round. So of those that it passes the same way, where it stands, it meets only what comes behind the
  * one that it leaves in the order of their numbers. Of those at one distance the first has been met first. */
 static vbool is_behind(const Geometry *geometry, const Ray *ray, const Triangle *left, vuint slot, vbool enters, vrefined t, vbool found) {
+#if EFFECT_OPACITY
+    const vbool at_once = found & vbool_not(vbool_of_refined(t > splat_refined(0))) & GOES_STRAIGHT(geometry, ray);
+    if (!any_lane(at_once)) return vbool_all;
+#else
     const vbool at_once = found & vbool_not(vbool_of_refined(t > splat_refined(0)));
     if (geometry->bodies == 0 || !any_lane(at_once)) return vbool_all;
+#endif
     WideVec d;
     d.x = wide(ray->direction.x);
     d.y = wide(ray->direction.y);
@@ -239,7 +253,7 @@ static void intersect_left_triangle(const Geometry *geometry, const Ray *ray, co
 #endif
     const Triangle left = load_triangle_if(geometry, doubtful, ray->own_slot);
     const vbool found = triangle_intersect(ray, shear, triangle, &left, doubtful, &t, &enters) & doubtful;
-#if MEDIA_IN_TRIANGLES
+#if PASSES_TRIANGLES
     keep_closer(geometry, found & is_behind(geometry, ray, &left, slot, enters, t, found), t, slot, enters, hit);
 #else
     keep_closer(geometry, found, t, slot, enters, hit);
@@ -277,13 +291,46 @@ static void surface_of_triangle(const Geometry *geometry, const Ray *ray, const 
 }
 #endif
 
+#if EFFECT_OPACITY
+/* The share of paths that a surface lets straight on. */
+static vreal let_through(const Geometry *geometry, vuint slot) {
+    const vuint material = gather_split_uint(geometry->slot_material, 0, slot);
+    return splat(1) - gather_real(geometry->materials + MATERIAL_OPACITY, material * MATERIAL_REALS);
+}
+#endif
+
 #if SPHERES_MET
+#if EFFECT_OPACITY
+/* Of surfaces that lie in one another and let rays on, one counts: the ray that has passed it into its inside is inside the others
+ * too, and meets them as if it had passed them. Otherwise it would pass each of them, where it stands, again and again. */
+static void enter_together(const Geometry *geometry, const Ray *ray, const Sphere *sphere, vuint slot, vbool found, vrefined *t,
+                           vbool *enters) {
+    vbool together = found & *enters & ray->passes;
+    if (!any_lane(together)) return;
+    Vec3 to_centre;
+    const vreal power = sphere_power(&ray->origin, sphere, &to_centre);
+    together = together & (power <= splat(2) * sphere->radius * ray->origin.error);
+    if (!any_lane(together)) return;
+    together = together & (let_through(geometry, choose_uint(together, slot, splat_uint(0))) > splat(0));
+    Ray leaving = *ray;
+    leaving.own_slot = choose_uint(together, slot, ray->own_slot);
+    const Sphere left = sphere_for_ray(geometry, &leaving, slot);
+    vrefined end;
+    together = together & sphere_exit(&leaving, &left, &end);
+    *t = choose_refined(together, end, *t);
+    *enters = *enters & vbool_not(together);
+}
+#else
+#define enter_together(geometry, ray, sphere, slot, found, t, enters)
+#endif
+
 /* Decides about a candidate. */
 FORCE_INLINE static void intersect_sphere(const Geometry *geometry, const Ray *ray, vbool active, const Sphere *sphere,
                                           vuint slot, Hit *hit) {
     vrefined t;
     vbool enters;
     const vbool found = sphere_intersect(ray, sphere, &t, &enters) & active;
+    enter_together(geometry, ray, sphere, slot, found, &t, &enters);
     keep_closer(geometry, found, t, slot, enters, hit);
 }
 

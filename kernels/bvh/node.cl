@@ -18,6 +18,9 @@ static Ray ray_for_all(const Ray_one *one) {
     ray.cull_margin = splat(one->cull_margin);
     ray.own_slot = splat_uint(one->own_slot);
     ray.inward = (vbool)(one->inward ? -1 : 0);
+#if EFFECT_OPACITY
+    ray.passes = (vbool)(one->passes ? -1 : 0);
+#endif
 #if EFFECT_MOTION
     ray.time = splat(one->time);
 #endif

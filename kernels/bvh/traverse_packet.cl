@@ -41,6 +41,9 @@ typedef struct LaneRays {
     LaneReals high[3], low[3], direction[3];
     LaneReals origin_error, cull_margin;
     LaneUints own_slot;
+#if EFFECT_OPACITY
+    LaneUints passes;
+#endif
 #if EFFECT_MOTION
     LaneReals time;
 #endif
@@ -63,6 +66,9 @@ static Ray_one ray_of_lane(const LaneRays *rays, uint lane) {
     ray.cull_margin = rays->cull_margin.of[lane];
     ray.own_slot = rays->own_slot.of[lane];
     ray.inward = 0; /* intersect_own_sphere has seen to that */
+#if EFFECT_OPACITY
+    ray.passes = (int)rays->passes.of[lane];
+#endif
 #if EFFECT_MOTION
     ray.time = rays->time.of[lane];
 #endif
@@ -520,6 +526,9 @@ ON_CHAINS static void traverse_packet(const Geometry *geometry, const Ray *ray, 
     rays.origin_error.all = ray->origin.error;
     rays.cull_margin.all = ray->cull_margin;
     rays.own_slot.all = ray->own_slot;
+#if EFFECT_OPACITY
+    rays.passes.all = choose_uint(ray->passes, splat_uint(1), splat_uint(0));
+#endif
 #if EFFECT_MOTION
     rays.time.all = ray->time;
 #endif

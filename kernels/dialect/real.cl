@@ -98,6 +98,8 @@ typedef REFINED refined;
 #define MEDIA_IN_BODIES (EFFECT_MEDIA && EFFECT_BODY_MEDIA)
 #define MEDIA_IN_TRIANGLES (MEDIA_IN_BODIES && EFFECT_TRIANGLES)
 #define MEDIA_IN_CAPSULES (MEDIA_IN_BODIES && EFFECT_CAPSULES)
+/* Rays go straight through triangles. */
+#define PASSES_TRIANGLES (MEDIA_IN_TRIANGLES || (EFFECT_OPACITY && EFFECT_TRIANGLES))
 #if MEDIA_IN_TRIANGLES
 #define WITH_BODIES(bodies) bodies,
 #else
@@ -105,6 +107,8 @@ typedef REFINED refined;
 #endif
 /* Rays to lamps pass the boundaries of media, and so do the paths that are weighted against them. */
 #define LAMPS_THROUGH_MEDIA (SAMPLES_LAMPS && EFFECT_MEDIA)
+/* And surfaces that let a share of paths on. */
+#define LAMPS_THROUGH (SAMPLES_LAMPS && (EFFECT_MEDIA || EFFECT_OPACITY))
 
 /* Some compilers leave parts of a ray's search functions of their own, and pass the ray, or two dozen vectors, through
  * memory. Where nothing is optimised, nothing is inlined either: Oclgrind cannot run what the inliner leaves behind. */

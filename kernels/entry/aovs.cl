@@ -25,12 +25,13 @@ __kernel VECTORS_WRITTEN void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel
         path_init_from_camera(camera, pixel_center, key, splat((real)(pixel % width)), splat((real)(pixel / width)),
                               vbool_of_uint(numbers < splat_uint(samples)), &path);
         const Ray ray = path_ray(&path);
-        const Hit hit = intersect_closest(&scene.geometry, &ray, path.alive);
+        PIECE(last)
+        const Hit hit = intersect_opaque(&scene.geometry, &path, &ray, path.alive, &last);
         const vbool met = path.alive & is_hit(&hit);
         if (!any_lane(met)) continue;
 
         Vertex vertex;
-        vertex_init(&scene, &ray, &hit, met, &vertex);
+        vertex_init(&scene, LAST_RAY(ray, last), LAST_HIT(hit, last), met, &vertex);
         const Vec3 normal = vertex.surface.normal, albedo = vertex.surface.albedo;
         const vreal values[AOV_FLOATS] = {
             /* along `forward_x, forward_y, forward_z`, from the camera */

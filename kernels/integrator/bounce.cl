@@ -10,7 +10,8 @@
 ON_CHAINS static void trace_bounce(const Scene *scene, Path *path) {
     const vbool moving = path_moves(path);
     const Ray ray = path_ray(path);
-    const Hit hit = intersect_closest(&scene->geometry, &ray, moving);
+    PIECE(last)
+    const Hit hit = intersect_opaque(&scene->geometry, path, &ray, moving, &last);
     path->latest = end_segment(scene, &ray, &hit, moving, path);
     see_background(scene, path);
     scatter_in_medium(scene, path);
@@ -18,7 +19,7 @@ ON_CHAINS static void trace_bounce(const Scene *scene, Path *path) {
     if (!any_lane(met)) return;
 
     Vertex vertex;
-    vertex_init(scene, &ray, &hit, met, &vertex);
+    vertex_init(scene, LAST_RAY(ray, last), LAST_HIT(hit, last), met, &vertex);
     see_surface(scene, &hit, met, &vertex, path);
     surface_set_odds(path, &vertex.surface);
     const BsdfSample bsdf_sample = scatter_folded(&vertex.surface, path->key, first_dimension(path->depth - 1u));

@@ -136,7 +136,7 @@ static void light_through_pair(const Scene *scene, Path *path, vuint bounce, vbo
         path->lamp_rays += popcount(lane_bits(lit));
         for (uint ball = 0; ball < 2u && any_lane(lit); ++ball)
             lit = pass_ball(scene, path->key, bounce, pair.balls[ball].number, pair.balls[ball].inside, lit, &ray, &weight);
-        if (any_lane(lit)) lit = meet_target(scene, &choice, &ray, lit);
+        if (any_lane(lit)) lit = meet_target(scene, &choice, &ray, WITH_LEFT(&weight) lit);
         if (!any_lane(lit)) continue;
         const vreal ratio = pair_ratio(scene, &pair, choice.target, direction, lit);
         add_chain(scene, path, &choice, &ray, direction, weight, ratio, lit);

@@ -75,7 +75,7 @@ ON_CHAINS static void trace_chain(const Scene *scene, Path *path, const ChainCho
     Vec3 weight = vec3(splat(1), splat(1), splat(1));
     path->lamp_rays += popcount(lane_bits(active));
     active = pass_ball(scene, path->key, bounce, choice->number, choice->inside, active, &ray, &weight);
-    if (any_lane(active)) active = meet_target(scene, choice, &ray, active);
+    if (any_lane(active)) active = meet_target(scene, choice, &ray, WITH_LEFT(&weight) active);
     if (!any_lane(active)) return;
     const vreal ratio = chain_ratio(scene, &focus, image, choice->inside, choice->target, &ray.origin, ray.direction);
     add_chain(scene, path, choice, &ray, direction, weight, ratio, active);

@@ -96,8 +96,12 @@ static vbool pass_ball(const Scene *scene, SampleKey key, vuint bounce, vuint nu
         active = active & (meets | vbool_not(here));
         vbool on = here & meets;
         if (!any_lane(on)) return active;
+#if EFFECT_OPACITY
+        const vbool seen = sees_through(geometry, ray, on, &expected, weight);
+#else
         const Hit first = intersect_closer(geometry, ray, on, expected);
         const vbool seen = vbool_of_uint(first.slot == slot) & vbool_of_refined(first.t == t);
+#endif
         on = on & seen;
         active = active & (seen | vbool_not(here));
         if (!any_lane(on)) return active;
@@ -147,8 +151,8 @@ static vbool pass_ball(const Scene *scene, SampleKey key, vuint bounce, vuint nu
     return active;
 }
 
-/* The lanes of `active` whose ray meets the target, and nothing before it. */
-static vbool meet_target(const Scene *scene, const ChainChoice *choice, const Ray *ray, vbool active) {
+/* The lanes of `active` whose ray meets the target, and nothing before it that stops all of it: `weight`, what is left. */
+static vbool meet_target(const Scene *scene, const ChainChoice *choice, const Ray *ray, WITH_LEFT(Vec3 *weight) vbool active) {
     const vbool near = active & vbool_not(choice->far);
     vbool shines = active & choice->far;
     Hit expected;
@@ -174,8 +178,12 @@ static vbool meet_target(const Scene *scene, const ChainChoice *choice, const Ra
     expected.slot = choice->lamp.slot;
     expected.enters = vbool_all;
     expected.bound = upper_bound(expected.t);
+#if EFFECT_OPACITY
+    return sees_through(&scene->geometry, ray, shines, &expected, weight);
+#else
     const Hit first = intersect_closer(&scene->geometry, ray, shines, expected);
     return shines & vbool_of_uint(first.slot == expected.slot) & vbool_of_refined(first.t == expected.t);
+#endif
 }
 
 /* The ray that begins a chain. */

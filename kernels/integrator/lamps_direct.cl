@@ -108,6 +108,7 @@ ON_CHAINS static Hit first_seen(const Scene *scene, const Ray *ray, const LampCh
     return first;
 }
 
+#if LAMPS_THROUGH
 #if LAMPS_THROUGH_MEDIA
 /* The lanes whose ray to a lamp has met the boundary of a medium. */
 static vbool meets_boundary(const Scene *scene, const Hit *hit, vuint lamp, vbool active) {
@@ -116,46 +117,78 @@ static vbool meets_boundary(const Scene *scene, const Hit *hit, vuint lamp, vboo
     const vuint material = gather_split_uint(scene->slot_material, 0, choose_uint(other, hit->slot, splat_uint(0)));
     return other & vbool_of_uint(gather_uint(scene->material_kinds, material * MATERIAL_UINTS) == splat_uint(KIND_INTERFACE));
 }
+#endif
 
 /* A ray to a lamp behind the boundaries that it has passed. */
 typedef struct LampWay {
     vbool passed; /* one or more */
+#if LAMPS_THROUGH_MEDIA
     vuint medium; /* behind them */
+#endif
 #if MEDIA_IN_TRIANGLES
     vuint bodies; /* around what is behind them */
 #endif
-    Vec3 left;    /* of light, by the media up to there */
+    Vec3 left;    /* of light, by the media and surfaces up to there */
 } LampWay;
 
-/* Takes rays that have met a boundary on to what they meet next, and so on. Where a ray begins anew, the lamp is sought from
+/* Takes rays that have met a boundary, or a surface that lets light on, to what they meet next, and so on. Where a ray begins anew, the lamp is sought from
  * there, as it is for a path: `cone` is what it fills there, of the direction alone, so choice->rest is that of a tangent. */
 static LampWay pass_boundaries(const Scene *scene, const Path *path, vbool active, LampChoice *choice, LampCone *cone, Ray *ray,
                                Hit *hit) {
     LampWay way;
     way.passed = vbool_none;
+#if LAMPS_THROUGH_MEDIA
     way.medium = path->medium; /* a surface that reflects lies in the medium that the path has come through */
+#endif
     way.left = vec3(splat(1), splat(1), splat(1));
 #if MEDIA_IN_TRIANGLES
     way.bodies = path->bodies;
 #endif
-#if EFFECT_ROUGH_DIELECTRIC
+#if EFFECT_ROUGH_DIELECTRIC && LAMPS_THROUGH_MEDIA
     const vbool through = active & is_rough_dielectric(&path->lobe) & (dot3(ray->direction, TRUE_NORMAL(path->lobe.)) < splat(0));
 #if MEDIA_IN_TRIANGLES
     way.bodies = bodies_beyond(scene, ray->own_slot, ray->inward, through, way.bodies);
 #endif
     if (any_lane(through)) way.medium = choose_uint(through, medium_around(scene, ray, WITH_BODIES(way.bodies) through), way.medium);
 #endif
+#if !EFFECT_OPACITY
     if (scene->boundaries[first_boundary(scene)] == NO_SLOT) return way;
+#endif
     const vbool far = vbool_of_uint(choice->slot >= splat_uint(DISC_SLOT));
+#if LAMPS_THROUGH_MEDIA
     vuint segments = path->depth + 1u;
+#endif
     for (;;) {
+#if EFFECT_OPACITY
+        const vbool other = active & vbool_of_uint(hit->slot != choice->slot);
+        if (!any_lane(other)) return way;
+        const vreal share = let_through(&scene->geometry, choose_uint(other, hit->slot, splat_uint(0)));
+        const vbool thin = other & (share > splat(0)) & (way.left.x + way.left.y + way.left.z > splat(LEFT_MIN));
+        way.left = choose3(thin, scale3(share, way.left), way.left);
+#endif
+#if LAMPS_THROUGH_MEDIA
         active = meets_boundary(scene, hit, choice->slot, active) & vbool_of_uint(segments < splat_uint(scene->max_depth));
+#endif
+#if EFFECT_OPACITY && LAMPS_THROUGH_MEDIA
+        segments = choose_uint(active, segments + 1u, segments);
+        active = active | thin;
+        if (!any_lane(active)) return way;
+#elif EFFECT_OPACITY
+        active = thin;
+        if (!any_lane(active)) return way;
+#else
         if (!any_lane(active)) return way;
         segments += splat_uint(1);
+#endif
         way.passed = way.passed | active;
         const vuint slot = choose_uint(active, hit->slot, splat_uint(0));
+#if LAMPS_THROUGH_MEDIA
         const Vec3 left = transmittance(scene, choose_uint(active, way.medium, splat_uint(0)), to_real(hit->t));
         way.left = choose3(active, multiply3(way.left, left), way.left);
+#endif
+#if EFFECT_OPACITY
+        go_behind(&scene->geometry, hit, active, ray);
+#else
 #if MEDIA_IN_TRIANGLES
         const vbool round = vbool_not(is_triangle(&scene->geometry, slot));
         const Sphere boundary = sphere_for_ray(&scene->geometry, ray, choose_uint(round, slot, splat_uint(0)));
@@ -177,10 +210,14 @@ static LampWay pass_boundaries(const Scene *scene, const Path *path, vbool activ
         ray->cull_margin = cull_margin_of(&ray->origin);
         ray->own_slot = choose_uint(active, slot, ray->own_slot);
         ray->inward = (active & hit->enters) | (vbool_not(active) & ray->inward);
+#endif
 #if MEDIA_IN_TRIANGLES
         way.bodies = bodies_beyond(scene, ray->own_slot, ray->inward, active, way.bodies);
 #endif
+#if LAMPS_THROUGH_MEDIA
         way.medium = choose_uint(active, medium_around(scene, ray, WITH_BODIES(way.bodies) active), way.medium);
+#endif
+#if SPHERES_MET
         const LampCone from_here = lamp_cone(&ray->origin, &choice->sphere);
         const vbool near = active & vbool_not(far);
         cone->distance = choose(near, from_here.distance, cone->distance);
@@ -188,6 +225,7 @@ static LampWay pass_boundaries(const Scene *scene, const Path *path, vbool activ
         cone->tangent = choose(near, from_here.tangent, cone->tangent);
         cone->cap = choose(near, from_here.cap, cone->cap);
         choice->rest = choose(near, splat(1), choice->rest);
+#endif
         const Hit next = first_seen(scene, ray, choice, cone, active);
         hit->t = choose_refined(active, next.t, hit->t);
         hit->slot = choose_uint(active, next.slot, hit->slot);
@@ -234,13 +272,14 @@ static Vec3 radiance_along(const Scene *scene, const Ray *ray, const Sphere *sph
 static Vec3 radiance_of_lamp(const Scene *scene, const Ray *ray, const LampChoice *choice, vbool visible) {
     const vuint slot = choice->slot;
 #if !SAMPLES_SKY
-    return radiance_along(scene, ray, &choice->sphere, slot, visible);
+    return SEEN_OF_LAMP(scene, slot, radiance_along(scene, ray, &choice->sphere, slot, visible));
 #else
     vbool disc = vbool_of_uint(slot >= splat_uint(DISC_SLOT));
     Vec3 radiance = zero3();
 #if SAMPLES_LAMP_TREE
-    radiance = radiance_along(scene, ray, &choice->sphere, choose_uint(disc, splat_uint(0), slot),
-                              visible & vbool_not(disc));
+    radiance = SEEN_OF_LAMP(scene, choose_uint(disc, splat_uint(0), slot),
+                            radiance_along(scene, ray, &choice->sphere, choose_uint(disc, splat_uint(0), slot),
+                              visible & vbool_not(disc)));
 #endif
     if (!any_lane(disc)) return radiance;
 #if SAMPLES_ENVIRONMENT
@@ -345,7 +384,7 @@ LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
 
     path->lamp_rays += popcount(lane_bits(active));
     Hit hit = first_seen(scene, &ray, &choice, &cone, active);
-#if LAMPS_THROUGH_MEDIA
+#if LAMPS_THROUGH
     const LampWay way = pass_boundaries(scene, path, active, &choice, &cone, &ray, &hit);
 #endif
     path->seen_slot = hit.slot;
@@ -364,6 +403,8 @@ LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
         const vbool far = vbool_of_uint(choice.slot >= splat_uint(DISC_SLOT));
         light = multiply3(light, transmittance(scene, medium, choose(far, splat(REAL_LARGE), length)));
     }
+#endif
+#if LAMPS_THROUGH
     if (any_lane(way.passed)) light = multiply3(light, way.left);
 #endif
     path->radiance = choose3(visible, add3(path->radiance, light), path->radiance);

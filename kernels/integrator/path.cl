@@ -21,6 +21,9 @@ static Ray path_ray(const Path *path) {
     ray.cull_margin = cull_margin_of(&path->origin);
     ray.own_slot = path->own_slot;
     ray.inward = path->inward;
+#if EFFECT_OPACITY
+    ray.passes = vbool_none;
+#endif
     ray_set_time(&ray, path);
     return ray;
 }

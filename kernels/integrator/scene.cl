@@ -54,6 +54,10 @@ static Scene scene_init(SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_FO
 #if EFFECT_TRIANGLES
     scene.coloured_slots = coloured_slots;
 #endif
+#if EFFECT_OPACITY
+    scene.geometry.materials = materials;
+    SET_SPLIT(&scene.geometry, slot_material)
+#endif
 #if MEDIA_IN_TRIANGLES
     scene.geometry.bodies = boundaries[2];
 #endif

@@ -88,7 +88,8 @@ ON_CHAINS static vbool lies_in_shadow(const Scene *scene, const Path *path, vboo
     ray.cull_margin = cull_margin_of(&ray.origin);
     ray.own_slot = choose_uint(lit, splat_uint(NO_SLOT), path->own_slot);
     ray.inward = path->inward & vbool_not(lit);
-    const Hit hit = intersect_closest(&scene->geometry, &ray, lit);
+    PIECE(last)
+    const Hit hit = intersect_opaque(&scene->geometry, path, &ray, lit, &last);
     return lit & is_hit(&hit);
 }
 #else

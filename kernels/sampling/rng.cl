@@ -18,12 +18,12 @@
  *     k = 10       the low bits of the choice among the discs of the sky, the image around and the tree of lamps
  *     k = 11, 12   the low bits of the choice of a row of that image, and of a texel in the row
  *     k = 13, 14   a flight through a medium, and its low bits
- *     15           kept
+ *     k = 15       whether the surfaces of the segment that ends there let the path straight on; its low bits, 2^24 further on
  *     Directions that are drawn by rejection: k = 0, 1, 2 and REJECTION_FIRST further on, REJECTION_STRIDE more for each try
  *     Rays through balls of glass and off mirrors have DIMENSIONS_OF_CAUSTICS more: k = 0, 1 the point of the lamp, 2 the
  *     ball or mirror, 3 the chain through it, 4 the lamp; those to the camera have them from DIMENSIONS_OF_CAUSTICS on
  *   A camera ray that meets the shadow catcher ends there, and the places of bounce b are those of try b to find light:
- *   k = 0, 1 the direction, 2 whether it is taken, 5 the gradient or which disc */
+ *   k = 0, 1 the direction, 2 whether it is taken, 5 the gradient or which disc; for b = 1 k = 15 whether surfaces let the light on */
 #define DIMENSION_PIXEL 0u
 #define DIMENSION_LENS 2u
 #define DIMENSION_TIME 4u
@@ -42,6 +42,8 @@
 #define BOUNCE_SKY_COLUMN 12u
 #define BOUNCE_FLIGHT 13u
 #define BOUNCE_FLIGHT_REFILL 14u
+#define BOUNCE_OPACITY 15u
+#define OPACITY_REFILL 0x1000000u
 #define REJECTION_FIRST 0x80000000u
 #define REJECTION_STRIDE 0x1000000u
 #if SAMPLES_CAUSTICS

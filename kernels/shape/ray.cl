@@ -17,6 +17,9 @@ typedef struct Ray {
     vreal cull_margin; /* bound on what the rounding of the origin does to a distance: cull_margin_of */
     vuint own_slot;    /* of the shape being left, or NO_SLOT */
     vbool inward;      /* it is left into its inside */
+#if EFFECT_OPACITY
+    vbool passes; /* it goes straight on from there */
+#endif
 #if EFFECT_MOTION
     vreal time; /* in [0, 1): from when the shutter opens to when it closes */
 #endif

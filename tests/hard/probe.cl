@@ -36,6 +36,9 @@ static Ray probe_ray(__global const real *in, uint own, uint slot) {
     ray.cull_margin = cull_margin_of(&ray.origin);
     ray.own_slot = own != 0 ? slot : NO_SLOT;
     ray.inward = own == 2;
+#if EFFECT_OPACITY
+    ray.passes = 0;
+#endif
     return ray;
 }
 

@@ -156,6 +156,7 @@ static void materials_and_looks(void **state) {
         {.kind = BP_MATERIAL_LAMBERTIAN,
          .albedo = {.1, .2, .3},
          .emit = {1, 2, 3},
+         .opacity = .3,
          .scatter = BP_SCATTER_HEMISPHERE},
         {.kind = BP_MATERIAL_METAL, .albedo = {.4, .5, .6}, .fuzz = .25, .fuzz_shape = BP_FUZZ_BALL},
         {.kind = BP_MATERIAL_DIELECTRIC,
@@ -186,7 +187,9 @@ static void materials_and_looks(void **state) {
     assert_int_equal(packed.material_count, 6);
     const PackedMaterial *numbers = packed.materials;
     const PackedMaterialKind *kinds = (const PackedMaterialKind *)packed.material_kinds;
-    assert_vector(numbers[0].emit, 1, 2, 3);
+    const double emits[2][3] = {{1, 2, 3}, {4, 5, 6}};
+    assert_memory_equal(numbers[0].emit, emits[0], sizeof emits[0]);
+    assert_true(numbers[0].opacity == .3 && numbers[1].opacity == 1 && numbers[5].opacity == 1);
     assert_int_equal(kinds[0].kind, KIND_LAMBERTIAN);
     assert_int_equal(kinds[0].lobe, LOBE_HEMISPHERE);
     assert_true(numbers[1].fuzz == .25);
@@ -198,7 +201,7 @@ static void materials_and_looks(void **state) {
         assert_int_equal(kinds[m].variant, FRESNEL_EXACT);
         assert_int_equal(kinds[m].total_reflection, TOTAL_ABSORB);
     }
-    assert_vector(numbers[3].emit, 4, 5, 6);
+    assert_memory_equal(numbers[3].emit, emits[1], sizeof emits[1]);
     assert_int_equal(kinds[3].kind, KIND_LIGHT);
     assert_int_equal(kinds[4].kind, KIND_NORMALS);
     /* By slot: the material, from inside out where the radius says so, and the colour, the sphere's own if it

@@ -70,6 +70,9 @@ static const CoveringRule effects_rules[] = {
     /* Boundaries of media. */
     {EFFECT_BIT(BODY_MEDIA), EFFECT_BIT(MEDIA)},
     {EFFECT_BIT(BODY_MEDIA), EFFECT_BIT(TRIANGLES) | EFFECT_BIT(CAPSULES)},
+    /* Glass has it where no media do. */
+    {EFFECT_BIT(OPACITY),
+     MATERIAL_EFFECTS & ~(EFFECT_BIT(DIELECTRIC) | EFFECT_BIT(MEDIA) | EFFECT_BIT(ROUGH_DIELECTRIC))},
     /* Of an image around it knows no light. */
     {EFFECT_BIT(SHADOW_CATCHER) | EFFECT_BIT(ENVIRONMENT), 0},
 };
@@ -130,6 +133,16 @@ static inline void effects_materials(EffectsScene *made, uint32_t bits) {
     for (int i = 0; i < shown && bp_effects_has(bits, BP_EFFECT_NORMALS); ++i)
         effects_material(made, BP_MATERIAL_NORMALS, 0, 0, 0);
     if (bp_effects_has(bits, BP_EFFECT_MEDIA)) effects_material(made, BP_MATERIAL_INTERFACE, 1, 1, 1);
+}
+
+/* All but every third material let light straight on, except for boundaries of media. */
+static inline void effects_opacity(EffectsScene *made, bool media) {
+    for (size_t m = 0; m < made->scene.material_count; ++m) {
+        BpMaterial *material = &made->materials[m];
+        if (bp_material_is(material->kind, BP_HAS_INSIDE) && media) continue;
+        if (m % 3 != 2 && bp_material_has(material->kind, BP_MEMBER_OPACITY))
+            material->opacity = m % 3 == 0 ? 0.4 : 0.75;
+    }
 }
 
 /* A member varies where there is one that does; without light there is always one that is black. */
@@ -404,6 +417,7 @@ static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
         scene->shadow_catcher =
             (BpShadowCatcher){.present = true, .normal = {0.28, 0.96, 0}, .distance = -0.25};
     effects_materials(made, bits);
+    if (bp_effects_has(bits, BP_EFFECT_OPACITY)) effects_opacity(made, bp_effects_has(bits, BP_EFFECT_MEDIA));
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES)) effects_textures(made, bits);
     if (bp_effects_has(bits, BP_EFFECT_TRIANGLES)) effects_triangles(made, bits);
     if (bp_effects_has(bits, BP_EFFECT_CAPSULES)) effects_capsules(made);

@@ -40,7 +40,7 @@ static const BpMaterial debug = {.name = (char *)"debug", .kind = BP_MATERIAL_NO
 #define OF_SCENES                                                                                            \
     (BIT(DISCS) | BIT(TEXTURES) | BIT(NOISE) | BIT(IMAGES) | BIT(ENVIRONMENT) | BIT(MOTION) | BIT(MEDIA) |   \
      BIT(BODY_MEDIA) | BIT(SHADOW_CATCHER) | BIT(CAUSTICS) | BIT(TRIANGLES) | BIT(TRIANGLE_LAMPS) |          \
-     BIT(SMOOTH_NORMALS) | BIT(CAPSULES) | BIT(ROULETTE) | BIT(TEXTURE_COORDINATES))
+     BIT(SMOOTH_NORMALS) | BIT(CAPSULES) | BIT(ROULETTE) | BIT(TEXTURE_COORDINATES) | BIT(OPACITY))
 
 /* What materials name as textures 1 and 2. */
 static BpTexture both[2] = {{.type = BP_TEXTURE_CHECKER, .colors = {{0, 0, 0}, {2, 2, 2}}},

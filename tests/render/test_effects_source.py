@@ -64,6 +64,7 @@ MARKS = {
     "CAPSULES": ["choose_ball", "capsule_is_candidate", "leaf_axes", "be_sphere"],
     "ROULETTE": ["roulette_chance"],
     "SHADOW_CATCHER": ["meets_catcher", "light_of_catcher", "lies_in_shadow"],
+    "OPACITY": ["let_through", "go_behind", "ray->passes"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
 # Code that several effects share.

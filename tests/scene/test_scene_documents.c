@@ -73,6 +73,7 @@ static void assert_same_scene(const BpScene *a, const BpScene *b) {
         assert_number(m->refraction_index, n->refraction_index);
         assert_int_equal(m->fresnel, n->fresnel);
         assert_int_equal(m->total_reflection, n->total_reflection);
+        assert_true(bp_material_opacity(m) == bp_material_opacity(n));
     }
     assert_int_equal(a->sphere_count, b->sphere_count);
     if (a->sphere_count > 0)
@@ -360,8 +361,8 @@ static void every_member_is_written(void **state) {
               "1e-7, 1e10] },"
               "\"background\": { \"bottom\": [0,0,0] }, \"transfer\": \"linear\", \"materials\": {"
               "\"m 1\": { \"type\": \"metal\", \"albedo\": [0.1,0.2,0.3], \"fuzz\": 0.1, \"fuzz_shape\": "
-              "\"ball\", \"emit\": [1,1,1] },"
-              "\"\": { \"type\": \"normals\" },"
+              "\"ball\", \"emit\": [1,1,1], \"opacity\": 0.3 },"
+              "\"\": { \"type\": \"normals\", \"opacity\": 1 },"
               "\"d\": { \"type\": \"dielectric\", \"refraction_index\": 1.1, \"fresnel\": \"none\", "
               "\"total_reflection\": \"refract\" } },"
               "\"spheres\": [ { \"center\": [0.1,0.2,-0.0], \"radius\": -1e-3, \"material\": \"\" } ] }");
