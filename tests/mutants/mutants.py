@@ -112,6 +112,11 @@ def media_cases(*names):
     return Script("tests/media/test_media.py", names, "9 media")
 
 
+def opacity(*names):
+    """Cases of tests/opacity/test_opacity.py."""
+    return Script("tests/opacity/test_opacity.py", names, "9 opacity")
+
+
 def body_cases(*names):
     """Cases of tests/media/test_body_media.py."""
     return Script("tests/media/test_body_media.py", names, "9 media")
@@ -2442,4 +2447,35 @@ MUTANTS = [
     Mutant("text is looked for after the render", "text beside pictures: a missing module is found when the picture is written",
            [patch("host/cli/cmd_render.c", "    BP_TRY(bp_result_check_text(line, &job->file, job->scene, err));\n", "")],
            [color_bar("Text.test_what_does_not_fit_is_said")]),
+    Mutant("opacity for transparency", "opacity: paths pass with the probability o",
+           [patch(KERNEL, "return splat(1) - gather_real(geometry->materials + MATERIAL_OPACITY", "return gather_real(geometry->materials + MATERIAL_OPACITY")],
+           [opacity("stacks")]),
+    Mutant("one surface for all", "opacity: the number of a segment is compared with the last surface alone",
+           [patch(KERNEL, "left = choose(open, left * share, left);", "left = choose(open, share, left);")], [opacity("stacks")]),
+    Mutant("segments that agree", "opacity: all segments of a path share one number",
+           [patch(KERNEL, "first_dimension(path->depth) + BOUNCE_OPACITY", "first_dimension(splat_uint(0)) + BOUNCE_OPACITY")], [opacity("segments_apart")]),
+    Mutant("passing costs depth", "opacity: a segment ends at each surface that lets the path on",
+           [patch(KERNEL, "const Hit hit = intersect_opaque(&scene->geometry, path, &ray, moving, &last);",
+                  "const Hit hit = intersect_opaque(&scene->geometry, path, &ray, moving, &last);\n"
+                  "    path->depth = choose_uint(last.ray.passes, path->depth + 1u, path->depth);")], [opacity("alpha_and_layers")]),
+    Mutant("rays to lamps are stopped", "opacity: what lets light on hides lamps",
+           [patch(KERNEL, "const vbool thin = other & (share > splat(0))", "const vbool thin = vbool_none & (share > splat(0))")], [opacity("shadows")]),
+    Mutant("rays to lamps pass whole", "opacity: what lets light on takes nothing of it",
+           [patch(KERNEL, "way.left = choose3(thin, scale3(share, way.left), way.left);", "")], [opacity("shadows")]),
+    Mutant("a pale lamp at full strength", "opacity: rays to a lamp bring what its surface lets through, too",
+           [patch(KERNEL, "scale3(splat(1) - let_through(&(scene)->geometry, slot), radiance)", "radiance")], [opacity("shadows")]),
+    Mutant("passed to the wrong side", "opacity: a ray that has passed goes on outside",
+           [patch(KERNEL, "ray->inward = (passing & hit->enters)", "ray->inward = (passing & vbool_not(hit->enters))")], [opacity("shapes_let_through")]),
+    Mutant("distances from the last surface", "opacity: the catcher is compared with a piece of the way",
+           [patch(KERNEL, "hit.t = choose_refined(met, behind + next.t, hit.t);", "hit.t = choose_refined(met, next.t, hit.t);")], [opacity("caught")]),
+    Mutant("shadows of opaque things alone", "opacity: the catcher's shadow is black below what lets light on",
+           [patch(KERNEL, "const Hit hit = intersect_opaque(&scene->geometry, path, &ray, lit, &last);",
+                  "const Hit hit = intersect_closest(&scene->geometry, &ray, lit);")], [opacity("caught")]),
+    Mutant("again and again", "opacity: surfaces of one place are passed where a ray stands until it is stopped",
+           [patch(KERNEL, "enter_together(geometry, ray, sphere, slot, found, &t, &enters);", "")], [opacity("one_in_another")]),
+    Mutant("films of any opacity", "opacity: the hash does not have it",
+           [patch("host/film/film_scene.c", "if (m == BP_MEMBER_OPACITY && bp_material_opacity(material) == 1) continue;",
+                  "if (m == BP_MEMBER_OPACITY) continue;")], [opacity("opaque_is_as_before")]),
+    Mutant("glass that lets light past fog", "opacity: boundaries of media may have it",
+           [patch("host/scene/scene_validate.c", "if (fault->subject == BP_FAULT_NONE) boundary_fault(scene, fault);", "")], [opacity("refusals")]),
 ]
