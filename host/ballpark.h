@@ -591,11 +591,14 @@ typedef enum BpFormat {
     BP_FORMAT_PPM_ASCII,
     BP_FORMAT_PFM,
     BP_FORMAT_EXR, /* with what there is of alpha, error, samples, depth, normal and albedo as layers */
-    BP_FORMAT_BPA  /* sums, not a picture: bp_film_write() */
+    BP_FORMAT_BPA, /* sums, not a picture: bp_film_write() */
+    BP_FORMAT_PDF, /* these two are written by the program alone */
+    BP_FORMAT_SVG
 } BpFormat;
 
 /* Writes atomically: a temporary file beside `path`, renamed when whole. `transfer` is for the 8-bit formats,
- * PNG and PPM. BP_ERR_FILE: it cannot be written; BP_ERR_USAGE: an empty picture, or BP_FORMAT_BPA. */
+ * PNG and PPM. BP_ERR_FILE: it cannot be written; BP_ERR_USAGE: an empty picture, or a format that holds
+ * sums or that the program alone writes. */
 BP_API BpStatus bp_picture_write(const BpPicture *picture, const char *path, BpFormat format,
                                  BpTransfer transfer, BpError *err);
 

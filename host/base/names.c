@@ -39,7 +39,8 @@ BP_WORDS_ENDED(BpTransfer, const char *const bp_transfer_names, TRANSFER_WORDS);
     X(BP_FORMAT_PNG, "png")                                                                                  \
     X(BP_FORMAT_PPM, "ppm")                                                                                  \
     X(BP_FORMAT_PPM_ASCII, "ppm-ascii")                                                                      \
-    X(BP_FORMAT_PFM, "pfm") X(BP_FORMAT_EXR, "exr") X(BP_FORMAT_BPA, "bpa")
+    X(BP_FORMAT_PFM, "pfm")                                                                                  \
+    X(BP_FORMAT_EXR, "exr") X(BP_FORMAT_BPA, "bpa") X(BP_FORMAT_PDF, "pdf") X(BP_FORMAT_SVG, "svg")
 BP_WORDS_ENDED(BpFormat, const char *const bp_format_names, FORMAT_WORDS);
 
 #define DEVICE_TYPE_WORDS(X) X(BP_DEVICE_CPU, "cpu") X(BP_DEVICE_GPU, "gpu") X(BP_DEVICE_OTHER, "other")

@@ -3,6 +3,7 @@
 
 #include "base/color.h"
 #include "base/module.h"
+#include "base/output_file.h"
 #include "drawing.h"
 #include "image/image.h"
 #include "layout.h"
@@ -12,6 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+
+enum { SIDE_MAX = 32767 }; /* of Cairo */
 
 /* A figure on its way. */
 typedef struct Work {
@@ -28,11 +31,11 @@ static BpStatus load_drawing(const BpDrawing **drawing, BpError *err) {
     const void *loaded = NULL;
     BpError fault = {0};
     if (bp_module_load(&name, &loaded, &fault) != BP_OK)
-        return bp_fail(
-            err, BP_ERR_USAGE,
-            "no text can be drawn, since %.650s; install Pango (`apt install libpango1.0-dev`) and build "
-            "Ballpark again, or render PNG pictures without text: leave out colour bars and legends",
-            fault.message);
+        return bp_fail(err, BP_ERR_USAGE,
+                       "no text, PDF or SVG can be drawn, since %.650s; install Pango (`apt install "
+                       "libpango1.0-dev`) and build "
+                       "Ballpark again, or render PNG pictures without colour bars and other text",
+                       fault.message);
     *drawing = loaded;
     return BP_OK;
 }
@@ -71,7 +74,7 @@ static BpStatus lay_out(Work *work, const uint32_t size[2], char *notes, size_t 
     static const uint32_t small[2] = {1, 1};
     notes[0] = '\0';
     BP_TRY(load_drawing(&work->drawing, err));
-    const BpStatus status = open_surface(work, BP_SURFACE_PIXELS, small, NULL, err);
+    BpStatus status = open_surface(work, BP_SURFACE_PIXELS, small, NULL, err);
     if (status == BP_OK) {
         const char *const family = work->drawing->family(work->surface);
         const char *const asked = work->figure->font[0] != '\0' ? work->figure->font : BP_FIGURE_FONT;
@@ -86,6 +89,13 @@ static BpStatus lay_out(Work *work, const uint32_t size[2], char *notes, size_t 
                            family);
     }
     work->drawing->close(&work->surface);
+    for (int d = 0; d < 2 && status == BP_OK; d++)
+        if (work->layout.whole[d] > SIDE_MAX)
+            status = bp_fail(
+                err, BP_ERR_USAGE,
+                "the figure has %u x %u pixels, and what draws text, PDF and SVG has at most %d along a "
+                "side; render a smaller picture, or one without text as a PNG",
+                work->layout.whole[0], work->layout.whole[1], SIDE_MAX);
     return status;
 }
 
@@ -224,6 +234,82 @@ BpStatus bp_figure_draw(const BpFigure *figure, const BpFigurePage *page, BpPict
     if (status == BP_OK) {
         const char *const fault = work.drawing->finish(work.surface, &drawn, &stride);
         status = fault == NULL ? compose(&work, drawn, stride, picture, err) : fail_drawing(fault, err);
+    }
+    work.drawing->close(&work.surface);
+    return status;
+}
+
+/* The pixels as an image of the drawing has them. */
+static uint32_t *encode_pixels(const BpPicture *picture, BpTransfer transfer) {
+    const size_t count = (size_t)picture->width * picture->height;
+    uint32_t *const words = malloc(count * sizeof *words);
+    for (size_t i = 0; i < count && words != NULL; i++) {
+        const double alpha = picture->alpha != NULL ? (double)picture->alpha[i] : 1;
+        const uint32_t cover = (uint32_t)lround(255 * alpha);
+        float straight[3];
+        for (int c = 0; c < 3; c++)
+            straight[c] = alpha > 0 ? (float)((double)picture->rgb[3 * i + (size_t)c] / alpha) : 0;
+        const uint32_t word = word_of(straight, transfer);
+        words[i] = cover << 24;
+        for (int shift = 0; shift <= 16; shift += 8)
+            words[i] |= ((word >> shift & 0xff) * cover + 127) / 255 << shift;
+    }
+    return words;
+}
+
+/* Paper, then the picture. */
+static BpStatus draw_ground(const Work *work, const BpPicture *picture, bool with_png, BpError *err) {
+    const BpFigurePage *const page = work->page;
+    const BpLayout *const layout = &work->layout;
+    const BpImageExtra none = {.note_count = 0};
+    char *png = NULL;
+    size_t size = 0;
+    if (!page->is_clear && (layout->whole[0] > picture->width || layout->whole[1] > picture->height)) {
+        double paper[3];
+        for (int c = 0; c < 3; c++) paper[c] = bp_transfer_byte(page->paper[c], page->transfer) / 255.0;
+        work->drawing->rectangle(work->surface, 0, 0, layout->whole[0], layout->whole[1], paper);
+    }
+    FILE *const memory = with_png ? open_memstream(&png, &size) : NULL;
+    BpStatus status = BP_OK;
+    if (memory != NULL) status = bp_png_write(picture, memory, page->transfer, &none, err);
+    if (memory != NULL && fclose(memory) != 0 && status == BP_OK)
+        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a picture");
+    uint32_t *const words = status == BP_OK ? encode_pixels(picture, page->transfer) : NULL;
+    if (status == BP_OK && (words == NULL || (with_png && png == NULL)))
+        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a picture");
+    if (status == BP_OK) {
+        const BpDrawnImage image = {.pixels = words,
+                                    .width = picture->width,
+                                    .height = picture->height,
+                                    .x = layout->origin[0],
+                                    .y = layout->origin[1],
+                                    .has_alpha = picture->alpha != NULL,
+                                    .png = png,
+                                    .png_size = size};
+        work->drawing->image(work->surface, &image);
+    }
+    free(words);
+    free(png);
+    return status;
+}
+
+BpStatus bp_figure_print(const BpFigure *figure, const BpFigurePage *page, const BpPicture *picture,
+                         BpFormat format, FILE *out, BpError *err) {
+    Work work = {.figure = figure, .page = page};
+    const uint32_t size[2] = {picture->width, picture->height};
+    const uint32_t *drawn = NULL;
+    size_t stride = 0;
+    char notes[1]; /* bp_figure_measure() has them */
+    const bool is_svg = format == BP_FORMAT_SVG;
+    BP_TRY(lay_out(&work, size, notes, sizeof notes, err));
+    BpStatus status =
+        open_surface(&work, is_svg ? BP_SURFACE_SVG : BP_SURFACE_PDF, work.layout.whole, out, err);
+    if (status == BP_OK) status = draw_ground(&work, picture, is_svg, err);
+    if (status == BP_OK) status = draw_all(&work, err);
+    if (status == BP_OK) {
+        const char *const fault = work.drawing->finish(work.surface, &drawn, &stride);
+        status = bp_output_finish(out, is_svg ? "SVG" : "PDF", err);
+        if (status == BP_OK && fault != NULL) status = fail_drawing(fault, err);
     }
     work.drawing->close(&work.surface);
     return status;

@@ -1,11 +1,13 @@
 /* draw.h: a picture as a journal prints it, with text in margins of its own.
  *
- * In:    a picture, what is to be written beside it.   Out: a wider picture.
+ * In:    a picture, what is to be written beside it.   Out: a wider picture; a PDF or SVG file.
  * Knows: the module that draws, paper and ink.   Does not know: scenes, where everything stands. */
 #ifndef BP_FIGURE_DRAW_H
 #define BP_FIGURE_DRAW_H
 
 #include "figure.h"
+
+#include <stdio.h>
 
 /* What it is drawn on. */
 typedef struct BpFigurePage {
@@ -24,5 +26,10 @@ BpStatus bp_figure_measure(const BpFigure *figure, const BpFigurePage *page, con
 /* Replaces the radiance and alpha of `picture` by those of the figure around it, and releases what else it
  * has. The pixels of the picture stay as they are. The picture is unchanged on failure. */
 BpStatus bp_figure_draw(const BpFigure *figure, const BpFigurePage *page, BpPicture *picture, BpError *err);
+
+/* Writes the figure as BP_FORMAT_PDF or BP_FORMAT_SVG: the picture as the bytes of an 8-bit PNG, text and
+ * lines as vectors. Equal figures give equal files, with the same fonts and libraries. */
+BpStatus bp_figure_print(const BpFigure *figure, const BpFigurePage *page, const BpPicture *picture,
+                         BpFormat format, FILE *out, BpError *err);
 
 #endif

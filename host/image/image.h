@@ -15,9 +15,10 @@ uint8_t bp_transfer_byte(double linear, BpTransfer transfer);
 /* The radiance that `transfer` encodes as `value`, 0 to 1. */
 double bp_transfer_inverse(double value, BpTransfer transfer);
 
-/* The format that `path`'s ending names (.png .ppm .pfm .exr .bpa, in any case); false when it names none. */
+/* The format that `path`'s ending names (.png .ppm .pfm .exr .bpa .pdf .svg, in any case); false when it
+ * names none. */
 bool bp_format_from_path(const char *path, BpFormat *format);
-/* The format by its name: png ppm ppm-ascii pfm exr bpa. */
+/* The format by its name: png ppm ppm-ascii pfm exr bpa pdf svg. */
 bool bp_format_from_name(const char *name, BpFormat *format);
 
 /* Metadata of a picture's file, in PNG and EXR. Zeros: none, and 8 bits. */
@@ -59,7 +60,7 @@ BpStatus bp_png_write_bytes(const uint8_t *rgb, uint32_t width, uint32_t height,
 /* Prints bytes, such as those of a PNG, in base64 (RFC 4648, section 4). */
 void bp_base64_print(const void *bytes, size_t size, FILE *out);
 
-/* Writes to an open stream; BP_FORMAT_BPA is refused. */
+/* Writes to an open stream; BP_FORMAT_BPA, BP_FORMAT_PDF and BP_FORMAT_SVG are refused. */
 BpStatus bp_picture_write_stream(const BpPicture *picture, FILE *out, BpFormat format, BpTransfer transfer,
                                  BpError *err);
 

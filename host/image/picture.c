@@ -50,6 +50,11 @@ BpStatus bp_picture_write_extra(const BpPicture *picture, FILE *out, BpFormat fo
         return bp_pfm_write(picture, out, err);
     case BP_FORMAT_EXR:
         return bp_exr_write(picture, out, extra, err);
+    case BP_FORMAT_PDF:
+    case BP_FORMAT_SVG:
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "PDF and SVG files are written by ballpark render and ballpark merge alone; write a PNG");
     case BP_FORMAT_BPA:
         break;
     }

@@ -149,7 +149,8 @@ INTERFACE = 2  # BP_INTERFACE_PYTHON: messages name arguments, not options of th
 
 # Words of enumerations, in the order of the header.
 TRANSFERS = ["gamma2", "srgb", "linear"]
-FORMATS = ["png", "ppm", "ppm-ascii", "pfm", "exr", "bpa"]
+FORMATS = ["png", "ppm", "ppm-ascii", "pfm", "exr", "bpa", "pdf", "svg"]
+PICTURES = FORMATS[:FORMATS.index("bpa")]  # those that the library writes
 DEVICE_TYPES = ["cpu", "gpu", "other"]
 CHOICES = {"precision": ["single", "double"], "math": ["strict", "fast"], "numerics": ["robust", "plain"],
            "sampler": ["independent", "sobol"], "light_sampling": ["on", "off"], "caustics": ["auto", "off", "on"],

@@ -93,8 +93,8 @@ class Picture:
 
     def encode(self, format: str = "png", transfer: typing.Optional[str] = None) -> bytes:
         """The bytes of a file: "png", "ppm", "ppm-ascii", "pfm" or "exr"."""
-        if format not in lib.FORMATS[:-1]:
-            raise lib.SceneError(f'format: found "{format}", expected one of {", ".join(lib.FORMATS[:-1])}')
+        if format not in lib.PICTURES:
+            raise lib.SceneError(f'format: found "{format}", expected one of {", ".join(lib.PICTURES)}')
         data, size = c.c_void_p(), c.c_size_t()
         lib.call("bp_picture_encode", c.byref(self._memory.struct), lib.FORMATS.index(format),
                  self._transfer(transfer), c.byref(data), c.byref(size))
@@ -110,7 +110,7 @@ class Picture:
         others.
         """
         ending = pathlib.Path(path).suffix[1:].lower()
-        if ending not in lib.FORMATS:
+        if ending not in [*lib.PICTURES, "bpa"]:
             raise lib.SceneError(f'{path}: found the ending ".{ending}", expected .png, .ppm, .pfm, .exr or .bpa')
         if ending == "bpa":
             lib.call("bp_film_write", self._film.pointer, c_text("path", path))

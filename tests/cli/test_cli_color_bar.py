@@ -233,7 +233,7 @@ class Without(Bar):
         """Refused before the render, with the package's name; all else goes on."""
         missing = {"BALLPARK_TEXT": "/nowhere/ballpark_text.so"}
         color = ("--set", "particles[0].color=" + json.dumps(TICKS))
-        self.fail_with(2, "render", "a.csv", "-o", "x.png", *color, says=("no text can be drawn", "libpango1.0-dev", "/nowhere"), environment=missing)
+        self.fail_with(2, "render", "a.csv", "-o", "x.png", *color, says=("no text, PDF or SVG can be drawn", "libpango1.0-dev", "/nowhere"), environment=missing)
         self.assertEqual(self.files(), ["a.csv"])
         for options in (("-o", "x.png"), ("-o", "x.pfm", *color), ("-o", "x.bpa", *color)):
             self.succeed("render", "a.csv", "-q", "--spp", 1, "--width", 40, *options, environment=missing)

@@ -174,7 +174,7 @@ class Figure(cli.ProgramTest):
         self.assertEqual(texts(read_png(self.render("a.png"))[5]), {"Software": "Ballpark"})  # unless it is asked for
 
     def test_what_has_no_place(self):
-        for name, options, words in (("a.ppm", ("--dpi", 300), "--dpi: PNG and EXR can record a resolution, ppm cannot"),
+        for name, options, words in (("a.ppm", ("--dpi", 300), "--dpi: PNG, EXR, PDF and SVG can record a resolution, ppm cannot"),
                                      ("a.bpa", ("--metadata",), "--metadata can be recorded in PNG and EXR pictures, not in bpa"),
                                      ("a.exr", ("--bit-depth", 16), "--bit-depth applies to PNG pictures, and this one is exr"),
                                      ("a.png", ("--bit-depth", 12), "8 or 16")):

@@ -127,7 +127,7 @@ class Wrong(ProgramTest):
         self.fail_with(2, "render", "s.json", "-o", "-", "--stats", "-", says="--stats")
         self.fail_with(2, "render", "s.json", "-o", "a.png", "--error-map", "a.png", says="--error-map")
         self.fail_with(2, "render", "s.json", "--error-map", "a.exr", says=".png")
-        self.fail_with(2, "render", "s.json", "-o", "a.jpg", says=["--output", ".png, .ppm, .pfm, .exr or .bpa"])
+        self.fail_with(2, "render", "s.json", "-o", "a.jpg", says=["--output", ".png, .pdf, .svg, .ppm, .pfm, .exr or .bpa"])
         self.assertEqual(self.files(), ["s.json"])
 
     def test_the_last_of_two_wins(self):

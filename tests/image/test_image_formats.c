@@ -349,6 +349,11 @@ static void what_is_no_picture_is_refused(void **state) {
     BpError err = {0};
     assert_int_equal(bp_picture_write_stream(&picture, stdout, BP_FORMAT_BPA, BP_TRANSFER_SRGB, &err),
                      BP_ERR_USAGE);
+    for (BpFormat format = BP_FORMAT_PDF; format <= BP_FORMAT_SVG; format++) {
+        assert_int_equal(bp_picture_write_stream(&picture, stdout, format, BP_TRANSFER_SRGB, &err),
+                         BP_ERR_USAGE);
+        assert_non_null(strstr(err.message, "ballpark render"));
+    }
     assert_int_equal(bp_picture_write_stream(&empty, stdout, BP_FORMAT_PNG, BP_TRANSFER_SRGB, &err),
                      BP_ERR_USAGE);
     bp_picture_clear(&picture);

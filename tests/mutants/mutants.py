@@ -42,6 +42,11 @@ def color_bar(*names):
     return Script("tests/cli/test_cli_color_bar.py", names, "1 exact")
 
 
+def vectors(*names):
+    """Tests of tests/cli/test_cli_vectors.py."""
+    return Script("tests/cli/test_cli_vectors.py", names, "1 exact")
+
+
 def selections(*names):
     """Tests of tests/particles/test_select_scenes.py."""
     return Script("tests/particles/test_select_scenes.py", tuple(f"Selections.test_{name}" for name in names), "1 exact")
@@ -2478,4 +2483,21 @@ MUTANTS = [
                   "if (m == BP_MEMBER_OPACITY) continue;")], [opacity("opaque_is_as_before")]),
     Mutant("glass that lets light past fog", "opacity: boundaries of media may have it",
            [patch("host/scene/scene_validate.c", "if (fault->subject == BP_FAULT_NONE) boundary_fault(scene, fault);", "")], [opacity("refusals")]),
+    Mutant("a date in a PDF", "figures as vectors: the second of its writing",
+           [patch("host/figure/cairo/ballpark_text.c", 'CAIRO_PDF_METADATA_CREATE_DATE, ""', 'CAIRO_PDF_METADATA_SUBJECT, ""')],
+           [vectors("Vectors.test_the_same_file_again")]),
+    Mutant("straight colours in a PDF", "figures as vectors: colours are not multiplied by the alpha",
+           [patch(FIGURE, "((word >> shift & 0xff) * cover + 127) / 255 << shift", "(word >> shift & 0xff) << shift")],
+           [vectors("Vectors.test_pixels_of_a_pdf")]),
+    Mutant("an SVG by way of Cairo's pixels", "figures as vectors: an alpha takes bits away",
+           [patch("host/figure/cairo/ballpark_text.c", "image->png != NULL && surface->is_svg", "false && surface->is_svg")],
+           [vectors("Vectors.test_pixels_of_an_svg")]),
+    Mutant("a pixel is a point", "figures as vectors: pages of 72 dots per inch",
+           [patch("host/figure/cairo/ballpark_text.c", "open_pdf(surface, points * page->width, points * page->height)",
+                  "open_pdf(surface, page->width, page->height)")], [vectors("Vectors.test_size_of_the_page")]),
+    Mutant("a baseline too high", "figures as vectors: text of files stands elsewhere than in pixels",
+           [patch("host/figure/cairo/ballpark_text.c", "cairo_translate(pen, 0, -baseline);", "cairo_translate(pen, 0, cairo_surface_get_type(surface->cairo) == CAIRO_SURFACE_TYPE_IMAGE ? -baseline : -baseline - 1);")],
+           [vectors("Vectors.test_poppler_draws_the_png")]),
+    Mutant("no paper", "figures as vectors: the margin of a dark picture is not painted",
+           [patch(FIGURE, "!page->is_clear && (layout->whole[0]", "page->is_clear && (layout->whole[0]")], [vectors("Vectors.test_librsvg_draws_the_png")]),
 ]

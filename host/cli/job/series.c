@@ -163,7 +163,7 @@ void bp_series_end(BpSeries *series) {
     X(BP_FORMAT_PPM, ".ppm")                                                                                 \
     X(BP_FORMAT_PPM_ASCII, ".ppm")                                                                           \
     X(BP_FORMAT_PFM, ".pfm")                                                                                 \
-    X(BP_FORMAT_EXR, ".exr")
+    X(BP_FORMAT_EXR, ".exr") X(BP_FORMAT_PDF, ".pdf") X(BP_FORMAT_SVG, ".svg")
 BP_WORDS(BpFormat, static const char *const endings, ENDINGS);
 
 /* name-0012.png of name.png; in a folder, and without --output, named after the scene. */

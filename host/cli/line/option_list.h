@@ -81,8 +81,8 @@ enum {
     OPTION(LIGHTING, "lighting", 0, BP_TRACERS | BP_SCENE,                                                   \
            "light that moves with the camera, instead of the scene's; sky: the scene's background",          \
            const char *, lighting, BP_WORD("soft", "studio", "rembrandt", "overhead", "sky"))                \
-    OPTION(DPI, "dpi", 0, BP_RENDER | BP_MERGE, "dots per inch, recorded in PNG and EXR", double, dpi,       \
-           BP_REAL("N", 0, 100000))                                                                          \
+    OPTION(DPI, "dpi", 0, BP_RENDER | BP_MERGE, "dots per inch, recorded in PNG, EXR, PDF and SVG", double,  \
+           dpi, BP_REAL("N", 0, 100000))                                                                     \
     OPTION(WIDTH_MM, "width-mm", 0, BP_RENDER,                                                               \
            "printed width; together with --dpi, sets the width in pixels", double, width_mm,                 \
            BP_REAL("N", 0, 100000))                                                                          \
@@ -149,8 +149,8 @@ enum {
     OPTION(EXPOSURE, "exposure", 0, BP_RENDER | BP_MERGE | BP_VIEW,                                          \
            "make the picture brighter by STOPS, each a factor of two; darker if negative", double, exposure, \
            BP_REAL("STOPS", -100, 100))                                                                      \
-    OPTION(FORMAT, "format", 0, BP_RENDER | BP_MERGE, "png, ppm, ppm-ascii, pfm, exr or bpa", BpFormat,      \
-           format, BP_CHOICE("FORMAT", bp_format_names, 0))                                                  \
+    OPTION(FORMAT, "format", 0, BP_RENDER | BP_MERGE, "png, pdf, svg, ppm, ppm-ascii, pfm, exr or bpa",      \
+           BpFormat, format, BP_CHOICE("FORMAT", bp_format_names, 0))                                        \
     OPTION(ERROR_MAP, "error-map", 0, BP_RENDER | BP_MERGE, "write a heat map of each pixel's noise",        \
            const char *, error_map, BP_RESULT("FILE.png"))                                                   \
     OPTION(STATS, "stats", 0, BP_RENDER,                                                                     \

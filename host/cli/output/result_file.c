@@ -37,6 +37,10 @@ static const char *format_ending(BpFormat format) {
         return ".exr";
     case BP_FORMAT_BPA:
         return ".bpa";
+    case BP_FORMAT_PDF:
+        return ".pdf";
+    case BP_FORMAT_SVG:
+        return ".svg";
     }
     return "";
 }
@@ -107,10 +111,10 @@ static BpStatus choose_output(const BpCommandLine *line, const char *source, BpR
         return BP_OK;
     }
     if (!has_format && !bp_format_from_path(line->output, &result->format))
-        return bp_fail(
-            err, BP_ERR_USAGE,
-            "--output %.400s: unknown ending; use .png, .ppm, .pfm, .exr or .bpa, or give --format",
-            line->output);
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--output %.400s: unknown ending; use .png, .pdf, .svg, .ppm, .pfm, .exr or .bpa, or "
+                       "give --format",
+                       line->output);
     return BP_OK;
 }
 
@@ -130,16 +134,22 @@ static BpStatus choose_error_map(const BpCommandLine *line, const char *source, 
     return bp_fail(err, BP_ERR_FILE, "the path after --error-map is too long");
 }
 
+/* Of vectors, with the picture as an image among them. */
+static bool is_vector(BpFormat format) {
+    return format == BP_FORMAT_PDF || format == BP_FORMAT_SVG;
+}
+
 /* By a transfer curve, as a screen shows it. */
 static bool is_encoded(BpFormat format) {
-    return format == BP_FORMAT_PNG || format == BP_FORMAT_PPM || format == BP_FORMAT_PPM_ASCII;
+    return format == BP_FORMAT_PNG || format == BP_FORMAT_PPM || format == BP_FORMAT_PPM_ASCII ||
+           is_vector(format);
 }
 
 /* Refuses options that the chosen format cannot hold. */
 static BpStatus check_figure(const BpCommandLine *line, BpFormat format, BpError *err) {
     const bool png = format == BP_FORMAT_PNG, noted = png || format == BP_FORMAT_EXR;
-    if (!noted && bp_option_given(line, BP_OPTION_DPI))
-        return bp_fail(err, BP_ERR_USAGE, "--dpi: PNG and EXR can record a resolution, %s cannot",
+    if (!noted && !is_vector(format) && bp_option_given(line, BP_OPTION_DPI))
+        return bp_fail(err, BP_ERR_USAGE, "--dpi: PNG, EXR, PDF and SVG can record a resolution, %s cannot",
                        bp_format_names[format]);
     if (!noted && line->metadata)
         return bp_fail(err, BP_ERR_USAGE, "--metadata can be recorded in PNG and EXR pictures, not in %s",
@@ -150,11 +160,11 @@ static BpStatus check_figure(const BpCommandLine *line, BpFormat format, BpError
             "--outlines and --depth-fog are drawn into pictures, and a .bpa file holds sums; give them to "
             "`ballpark merge`, which makes the picture");
     if (bp_option_given(line, BP_OPTION_EXPOSURE) && !is_encoded(format))
-        return bp_fail(
-            err, BP_ERR_USAGE,
-            "--exposure applies to PNG and PPM pictures, and this one is %s, which keeps the radiance "
-            "as it is",
-            bp_format_names[format]);
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--exposure applies to PNG, PDF, SVG and PPM pictures, and this one is %s, which "
+                       "keeps the radiance "
+                       "as it is",
+                       bp_format_names[format]);
     if (!png && line->bit_depth != NULL)
         return bp_fail(err, BP_ERR_USAGE, "--bit-depth applies to PNG pictures, and this one is %s",
                        bp_format_names[format]);
@@ -247,23 +257,39 @@ static BpStatus draw_cues(const BpCommandLine *line, const BpScene *scene, BpPic
     return bp_depth_cues_draw(picture, &cues, err);
 }
 
-/* What is written beside the picture; NULL: nothing. */
+/* What is written beside the picture; NULL: it needs no figure. */
 static const BpFigure *figure_of(const BpScene *scene, const BpResultFile *result) {
-    const bool has_text = scene != NULL && bp_figure_has_text(&scene->figure) && is_encoded(result->format);
-    return has_text ? &scene->figure : NULL;
+    static const BpFigure bare;
+    if (!is_encoded(result->format)) return NULL;
+    if (scene != NULL && bp_figure_has_text(&scene->figure)) return &scene->figure;
+    return is_vector(result->format) ? &bare : NULL;
 }
 
 /* Margins continue a backdrop of one colour; beside any other picture they are white. */
 static BpFigurePage page_of(const BpCommandLine *line, const BpScene *scene, BpTransfer transfer) {
     BpFigurePage page = {.dots_per_inch = bp_option_given(line, BP_OPTION_DPI) ? line->dpi : BP_FIGURE_DPI,
                          .transfer = transfer,
-                         .is_clear = scene->backdrop == BP_BACKDROP_NONE,
                          .paper = {1, 1, 1}};
+    if (scene == NULL) return page; /* then there are no margins */
+    page.is_clear = scene->backdrop == BP_BACKDROP_NONE;
     const double *const bottom = scene->backdrop_bottom, *const top = scene->backdrop_top;
     bool is_even = scene->backdrop == BP_BACKDROP_COLORS;
     for (int c = 0; c < 3; c++) is_even = is_even && !(bottom[c] < top[c]) && !(bottom[c] > top[c]);
     for (int c = 0; c < 3 && is_even; c++) page.paper[c] = bottom[c] * exp2(line->exposure);
     return page;
+}
+
+/* A figure that is written as vectors. */
+typedef struct Printed {
+    const BpFigure *figure;
+    const BpFigurePage *page;
+    const BpPicture *picture;
+    BpFormat format;
+} Printed;
+
+static BpStatus print_figure(const void *what, FILE *out, BpError *err) {
+    const Printed *const printed = what;
+    return bp_figure_print(printed->figure, printed->page, printed->picture, printed->format, out, err);
 }
 
 BpStatus bp_result_check_text(const BpCommandLine *line, const BpResultFile *result, const BpScene *scene,
@@ -296,21 +322,28 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
     if (figure != NULL) page = page_of(line, scene, transfer);
     if (figure != NULL && result->format == BP_FORMAT_PNG) extra.dots_per_inch = page.dots_per_inch;
     /* The map shows the errors of the render, not of lines drawn over it. */
-    const bool apart = figure != NULL || bp_result_has_cues(line) || line->exposure != 0;
+    const bool apart =
+        (figure != NULL && !is_vector(result->format)) || bp_result_has_cues(line) || line->exposure != 0;
     if (is_picture || has_map) BP_TRY_GOTO(status, bp_film_picture(film, &picture, err), done);
     if (has_map && apart) BP_TRY_GOTO(status, bp_film_picture(film, &undrawn, err), done);
     BP_TRY_GOTO(status, draw_cues(line, scene, &picture, err), done);
     if (is_picture) bp_picture_expose(&picture, line->exposure);
-    if (figure != NULL) BP_TRY_GOTO(status, bp_figure_draw(figure, &page, &picture, err), done);
+    if (figure != NULL && !is_vector(result->format))
+        BP_TRY_GOTO(status, bp_figure_draw(figure, &page, &picture, err), done);
     if (rendered && picture.alpha != NULL && is_picture && result->format != BP_FORMAT_PNG &&
-        result->format != BP_FORMAT_EXR)
+        result->format != BP_FORMAT_EXR && !is_vector(result->format))
         bp_say(line, "%s has no alpha: transparent parts are black; .png and .exr keep it",
                bp_result_name(result));
     BpCommandLine of_result = *line;
     if (result->is_own) of_result.no_clobber = false;
-    status = is_picture ? bp_line_write_picture(&of_result, result->path, &picture, result->format, transfer,
-                                                &extra, err)
-                        : bp_line_write_film(&of_result, result->path, film, err);
+    const Printed printed = {figure, &page, &picture, result->format};
+    if (is_vector(result->format))
+        status = bp_line_write(&of_result, result->path, print_figure, &printed, err);
+    else if (is_picture)
+        status =
+            bp_line_write_picture(&of_result, result->path, &picture, result->format, transfer, &extra, err);
+    else
+        status = bp_line_write_film(&of_result, result->path, film, err);
     /* A closed pipe ends the picture, but the map is a separate file. */
     if (has_map && (status == BP_OK || strcmp(result->path, "-") == 0)) {
         const BpStatus mapped = bp_line_write(line, result->error_map, print_error_map,
