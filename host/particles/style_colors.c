@@ -93,13 +93,13 @@ static BpStatus rank_names(BpStyleJob *job, BpError *err) {
 }
 
 /* What colours are by. */
-#define COLOR_WORDS(X)                                                                                       \
+#define COLOR_NAMES(X)                                                                                       \
     X(BP_COLOR_AUTO, "")                                                                                     \
     X(BP_COLOR_CONSTANT, "")                                                                                 \
     X(BP_COLOR_ELEMENT, "elements")                                                                          \
     X(BP_COLOR_CHAIN, "chains")                                                                              \
     X(BP_COLOR_RESIDUE, "residues") X(BP_COLOR_TYPE, "types") X(BP_COLOR_COLUMN, "values")
-BP_WORDS(BpColorBy, static const char *const color_names, COLOR_WORDS);
+BP_WORDS(BpColorBy, static const char *const color_names, COLOR_NAMES);
 
 static bool is_without_value(const BpStyleJob *job, size_t i) {
     return isnan(job->color_numbers[i]);

@@ -102,6 +102,8 @@ static const char probe_text[] =
     "    vstore8((float8)(a.x, a.y, a.z, b.x, b.y, b.z, 0, 0), i, out);\n"
     "}\n";
 
+enum { ONCE, AGAIN, METAL, COAT, BASE, NONE, KINDS }; /* as the kernel `kinds` lists them */
+
 typedef struct LobeCase {
     const char *name;
     cl_uint kind, roughness, cosine; /* as probe_surface has them */
@@ -234,10 +236,10 @@ static void densities(void **state) {
 /* Density times weight times share of each part is the value of the part times the cosine, and both ways the
  * same, at all angles. */
 static void values(void **state) {
-    enum { ONCE, AGAIN, METAL, COAT, BASE, PARTS };
+    enum { PARTS = NONE };
     static const char *const names[PARTS] = {"once", "again", "metal", "coat", "base"};
     static const cl_uint roughness[] = {50, 100, 200};
-    float kinds[PARTS + 1];
+    float kinds[KINDS];
     probe_run(*state, "kinds", 0, 0, 1, kinds, sizeof kinds);
     for (int n = 0; n < 3 * PARTS; ++n) {
         const int part = n / 3;
@@ -352,7 +354,7 @@ static void coats(void **state) {
         }
     }
     static const cl_uint cosine[] = {250, 200, 125, 60, 25};
-    float kinds[6];
+    float kinds[KINDS];
     probe_run(*state, "kinds", 0, 0, 1, kinds, sizeof kinds);
     for (int n = 0; n < 5; ++n) {
         const LobeCase lobe = glossy_case(0, cosine[n]);
@@ -361,9 +363,9 @@ static void coats(void **state) {
         probe_run(*state, "draw", 21, which_of(&lobe), COUNT, drawn, sizeof drawn);
         for (size_t i = 0; i < COUNT; ++i) {
             const float *row = &drawn[i * ROW];
-            const bool coat = row[6] == kinds[5];
+            const bool coat = row[6] == kinds[NONE];
             reflected += coat ? 1.0 / COUNT : 0;
-            if (!coat) assert_true(row[6] == kinds[4]);
+            if (!coat) assert_true(row[6] == kinds[BASE]);
             if (coat) assert_true(length2(sub(row_direction(row), mirrored)) < 1e-11);
             for (int c = 0; c < 3 && coat; ++c) assert_true(fabs((double)row[3 + c] - 1) < 1e-5);
         }
@@ -379,7 +381,7 @@ static void coats(void **state) {
  * definitions over all directions. The figures of docs/MATERIALS.md. */
 static void glossy_losses(void **state) {
     static const cl_uint roughness[] = {0, 60, 100, 150, 200}, cosine[] = {250, 125, 25};
-    float kinds[6];
+    float kinds[KINDS];
     probe_run(*state, "kinds", 0, 0, 1, kinds, sizeof kinds);
     for (size_t n = 0; n < 15; ++n) {
         const LobeCase lobe = glossy_case(roughness[n / 3], cosine[n % 3]);
@@ -390,7 +392,7 @@ static void glossy_losses(void **state) {
         probe_run(*state, "draw", 33, which_of(&lobe), COUNT, drawn, sizeof drawn);
         for (size_t i = 0; i < COUNT; ++i) {
             const float *row = &drawn[i * ROW];
-            const double weight = row[7] < 0 ? 0 : row[6] == kinds[4] ? 1 : (double)row[3];
+            const double weight = row[7] < 0 ? 0 : row[6] == kinds[BASE] ? 1 : (double)row[3];
             left += weight / COUNT;
             square += weight * weight / COUNT;
         }
@@ -411,14 +413,14 @@ static void glossy_losses(void **state) {
 
 /* How often the kernel draws light that is scattered again: by the closed form. */
 static void shares(void **state) {
-    float kinds[6];
+    float kinds[KINDS];
     probe_run(*state, "kinds", 0, 0, 1, kinds, sizeof kinds);
     for (size_t n = 0; n < sizeof cases / sizeof cases[0]; ++n) {
         const LobeCase *lobe = &cases[n];
         double again = 0;
         if (lobe->kind != KIND_OREN_NAYAR) continue;
         probe_run(*state, "draw", 77, which_of(lobe), COUNT, drawn, sizeof drawn);
-        for (size_t i = 0; i < COUNT; ++i) again += drawn[i * ROW + 6] == kinds[1] ? 1.0 / COUNT : 0;
+        for (size_t i = 0; i < COUNT; ++i) again += drawn[i * ROW + 6] == kinds[AGAIN] ? 1.0 / COUNT : 0;
         const double due = 1 - bp_ref_oren_nayar_share(roughness_of(lobe), lobe->cosine / 250.0);
         describe(lobe);
         printf("again %.5f of %.5f\n", again, due);
@@ -441,12 +443,12 @@ static void ends(void **state) {
     for (size_t n = 0; n < 60; ++n) {
         const cl_uint kind = n < 20 ? KIND_OREN_NAYAR : n < 40 ? KIND_ROUGH_METAL : KIND_GLOSSY;
         const LobeCase lobe = {"", kind, roughness[n % 4], cosine[n / 4 % 5]};
-        float kinds[6];
+        float kinds[KINDS];
         probe_run(*state, "kinds", 0, 0, 1, kinds, sizeof kinds);
         probe_run(*state, "draw", (cl_uint)n, which_of(&lobe), COUNT, drawn, sizeof drawn);
         for (size_t i = 0; i < COUNT; ++i) {
             const float *row = &drawn[i * ROW];
-            const bool coat = kind == KIND_GLOSSY && row[6] != kinds[4];
+            const bool coat = kind == KIND_GLOSSY && row[6] != kinds[BASE];
             const Vec d = row_direction(row);
             assert_true(fabs(length2(d) - 1) < 2e-6);
             if (row[7] < 0) continue;
