@@ -23,9 +23,7 @@
 #define intersect_triangle LANED(intersect_triangle)
 #define is_behind LANED(is_behind)
 #define let_through LANED(let_through)
-#if EFFECT_OPACITY
 #define enter_together LANED(enter_together)
-#endif
 #define intersect_left_triangle LANED(intersect_left_triangle)
 #define intersect_triangle_beside_sphere LANED(intersect_triangle_beside_sphere)
 #define surface_of_triangle LANED(surface_of_triangle)
@@ -320,8 +318,6 @@ static void enter_together(const Geometry *geometry, const Ray *ray, const Spher
     *t = choose_refined(together, end, *t);
     *enters = *enters & vbool_not(together);
 }
-#else
-#define enter_together(geometry, ray, sphere, slot, found, t, enters)
 #endif
 
 /* Decides about a candidate. */
@@ -330,7 +326,9 @@ FORCE_INLINE static void intersect_sphere(const Geometry *geometry, const Ray *r
     vrefined t;
     vbool enters;
     const vbool found = sphere_intersect(ray, sphere, &t, &enters) & active;
+#if EFFECT_OPACITY
     enter_together(geometry, ray, sphere, slot, found, &t, &enters);
+#endif
     keep_closer(geometry, found, t, slot, enters, hit);
 }
 

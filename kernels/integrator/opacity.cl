@@ -122,7 +122,7 @@ static vbool sees_through(const Geometry *geometry, const Ray *ray, vbool active
 #define SEEN_OF_LAMP(scene, slot, radiance) radiance
 #define WITH_LEFT(weight)
 #define PIECE(name)
-#define LAST_RAY(ray, last) (&ray)
-#define LAST_HIT(hit, last) (&hit)
+#define LAST_RAY(ray, last) &ray
+#define LAST_HIT(hit, last) &hit
 #define intersect_opaque(geometry, path, ray, moving, last) intersect_closest(geometry, ray, moving)
 #endif
