@@ -264,17 +264,24 @@ class Unseen(cli.ProgramTest):
                 stats = self.render(scaled(name, bright, large), "a.bpa", "--spp", 1, "--caustics", "auto")
                 self.assertEqual(stats["caustics"], word, (name, bright, large))
 
-    def test_rare_ways(self):
+    def rare_ways(self, *widths):
         """What glass reflects inside once and twice is found at every size of the picture: the claim for a sample is the same. (With
         rays through glass, in this scene nothing else is left to chance: of glass with so low an index they are sent straight through alone.)"""
         claims = []
         scene = json.loads(pathlib.Path(scene_of("caustic-through-glass")).read_text(encoding="utf-8"))
         scene["materials"]["glass"]["refraction_index"] = 1.4
         low = self.write("low.json", scene)
-        for width in (32, 128, 192, 320, 1280):
+        for width in widths:
             stats = self.render(low, "a.bpa", "--spp", 1, "--width", width, "--caustics", "on")
             claims.append(stats["unseen"]["variance"] ** 0.5)
         self.assertLess(max(claims), 2 * min(claims), claims)
+
+    def test_rare_ways(self):
+        self.rare_ways(32, 128, 192, 320)
+
+    @cli.deep
+    def test_rare_ways_in_large_pictures(self):
+        self.rare_ways(32, 128, 192, 320, 1280)
 
     def test_scenes_without(self):
         """Without lights, or without what focuses them, there is no pilot in the program: a fault in its text is not met."""
