@@ -85,7 +85,7 @@ def check_bash():
     assert complete("render", "--prec") == ["--precision"] and complete("merge", "--prec") == []
     assert complete("render", "--precision", "") == ["double", "single"]
     assert complete("render", "--precision", "=", "d") == ["double"] and complete("render", "--precision", "=") == ["double", "single"]
-    assert complete("render", "--format", "p") == ["pfm", "png", "ppm", "ppm-ascii"]
+    assert complete("render", "--format", "p") == ["pdf", "pfm", "png", "ppm", "ppm-ascii"]
     assert complete("render", "--spp", "") == [] and complete("devices", "") == []
     assert complete("generate", "") == ["cover", "field"] and complete("help", "ch") == ["check"]
     assert complete("-q", "render", "--error-") == ["--error-map"]
