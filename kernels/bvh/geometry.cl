@@ -69,6 +69,11 @@ typedef struct Geometry {
 #endif
 #if EFFECT_OPACITY
     __global const real *materials; /* for what surfaces let straight on */
+#endif
+#if GLASS_TRIANGLES
+    __global const packed_uint *material_kinds; /* for which triangles are glass; 0: none is */
+#endif
+#if EFFECT_OPACITY || GLASS_TRIANGLES
     SPLIT_MEMBER(UINTS, packed_uint, slot_material, slots, "the table of sphere materials")
 #endif
 #if MEDIA_IN_TRIANGLES
@@ -101,6 +106,9 @@ static void geometry_init(SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) CAPSULES_PARAMET
 #undef SET_ARRAY
 #if MEDIA_IN_TRIANGLES
     geometry->bodies = 0;
+#endif
+#if GLASS_TRIANGLES
+    geometry->material_kinds = 0;
 #endif
     geometry->first_leaves = first_leaves;
     geometry->leaf_count = leaf_count;

@@ -22,6 +22,7 @@
 #define shear_at_triangles LANED(shear_at_triangles)
 #define intersect_triangle LANED(intersect_triangle)
 #define is_behind LANED(is_behind)
+#define goes_straight LANED(goes_straight)
 #define let_through LANED(let_through)
 #define enter_together LANED(enter_together)
 #define intersect_left_triangle LANED(intersect_left_triangle)
@@ -210,22 +211,30 @@ static void intersect_triangle_beside_sphere(const Geometry *geometry, const Ray
 #endif
 
 #if PASSES_TRIANGLES
-#if MEDIA_IN_TRIANGLES
-#define GOES_STRAIGHT(geometry, ray) ((ray)->passes | vbool_of_uint(splat_uint((geometry)->bodies) != splat_uint(0)))
-#else
-#define GOES_STRAIGHT(geometry, ray) (ray)->passes
+/* The lanes whose rays may go straight through the triangle that they leave, or nearly so. */
+static vbool goes_straight(const Geometry *geometry, const Ray *ray, vbool asked) {
+    vbool straight = vbool_none;
+#if EFFECT_OPACITY
+    straight = straight | ray->passes;
 #endif
+#if MEDIA_IN_TRIANGLES
+    straight = straight | vbool_of_uint(splat_uint(geometry->bodies) != splat_uint(0));
+#endif
+#if GLASS_TRIANGLES
+    if (geometry->material_kinds != 0 && any_lane(asked)) {
+        const vuint material = gather_split_uint(geometry->slot_material, 0, choose_uint(asked, ray->own_slot, splat_uint(0)));
+        straight = straight | vbool_of_uint(gather_uint(geometry->material_kinds, material * MATERIAL_UINTS) == splat_uint(KIND_DIELECTRIC));
+    }
+#endif
+    return asked & straight;
+}
+
 /* Where triangles meet in a vertex, each may lie before the next around a saddle, and a ray that goes straight through all of
  * them would go round and round. So of those that it passes the same way, where it stands, it meets only what comes behind the
  * one that it leaves in the order of their numbers. Of those at one distance the first has been met first. */
 static vbool is_behind(const Geometry *geometry, const Ray *ray, const Triangle *left, vuint slot, vbool enters, vrefined t, vbool found) {
-#if EFFECT_OPACITY
-    const vbool at_once = found & vbool_not(vbool_of_refined(t > splat_refined(0))) & GOES_STRAIGHT(geometry, ray);
+    const vbool at_once = goes_straight(geometry, ray, found & vbool_not(vbool_of_refined(t > splat_refined(0))));
     if (!any_lane(at_once)) return vbool_all;
-#else
-    const vbool at_once = found & vbool_not(vbool_of_refined(t > splat_refined(0)));
-    if (geometry->bodies == 0 || !any_lane(at_once)) return vbool_all;
-#endif
     WideVec d;
     d.x = wide(ray->direction.x);
     d.y = wide(ray->direction.y);

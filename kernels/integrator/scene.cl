@@ -56,6 +56,11 @@ static Scene scene_init(SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_FO
 #endif
 #if EFFECT_OPACITY
     scene.geometry.materials = materials;
+#endif
+#if GLASS_TRIANGLES
+    scene.geometry.material_kinds = material_kinds;
+#endif
+#if EFFECT_OPACITY || GLASS_TRIANGLES
     SET_SPLIT(&scene.geometry, slot_material)
 #endif
 #if MEDIA_IN_TRIANGLES

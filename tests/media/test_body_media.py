@@ -216,6 +216,19 @@ def edges_and_vertices():
     return f"{count} rays, none wrong"
 
 
+def glass_of_little_index():
+    """Rays through the vertices of a bumpy body of glass that bends them little or not at all go on to the sky, none round and round."""
+    side, count = 240, 0
+    points, faces, _ = pillow(side, 20.0, 1)
+    middle = (side - 1) / 2
+    for name, glass in (("1", MATERIALS["matched"]), ("1.001", {"type": "dielectric", "refraction_index": 1.001, "fresnel": "none"})):
+        mesh = {"file": "x.off", "material": "clear", "translate": [-middle, -middle, 0]}
+        document = scene({}, side, camera={"lookfrom": [0, 0, 100]}, side=side, meshes=[mesh])
+        document["materials"] = {"clear": glass}
+        count += compare(document, [0.0] * side ** 2, f"glass of index {name}", files={"x.off": off(points, faces)})
+    return f"{count} rays, none lost"
+
+
 def nested_and_overlapping():
     """The boundary of least volume around a point decides, of equal ones the first kind; without an interior it is clear."""
     outer = box((-1, -1, -1), (1, 1, 1), "a", rotate=[10, 20, 30])
@@ -502,5 +515,5 @@ def explained():
 
 
 CASES = [chords, quads_and_triangles, concave, nested_and_overlapping, camera_inside, documents, films, explained]
-DEEP_CASES = [edges_and_vertices, furnace, beer_in_glass, behind, single_scattering, unseen_light, forms, lamps]
+DEEP_CASES = [edges_and_vertices, glass_of_little_index, furnace, beer_in_glass, behind, single_scattering, unseen_light, forms, lamps]
 sys.exit(run_cases(CASES, DEEP_CASES))
