@@ -74,7 +74,7 @@ def make():
     start = time.monotonic()
     run(["cmake", "-S", source, "-B", own, "-G", "Ninja", "--toolchain", source / "cmake/aarch64.cmake",
          f"-DAARCH64_ROOT={root}", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_COMPILE_WARNING_AS_ERROR=ON",
-         "-DBALLPARK_BENCH=OFF", "-DBALLPARK_VIEW=OFF", "-DBALLPARK_MPI=OFF", "--log-level=WARNING"])
+         "-DBALLPARK_BENCH=OFF", "-DBALLPARK_VIEW=OFF", "-DBALLPARK_TEXT=OFF", "-DBALLPARK_MPI=OFF", "--log-level=WARNING"])
     run(["cmake", "--build", own, "--target", "ballpark", "host_tests", "--", "--quiet"])
     machine = run(["file", "-b", own / "ballpark"]).stdout if shutil.which("file") else "aarch64"
     assert "aarch64" in machine, machine
