@@ -209,7 +209,7 @@ class Suite(Check):
         sampled = [check["scene"] for check in checks if (check["light_sampling"], check["caustics"]) == ("on", "off")]
         self.assertEqual([check["scene"] for check in checks if check["light_sampling"] == "off"], SCENES)
         led = [check["scene"] for check in checks if check["caustics"] == "on"]
-        self.assertEqual(led, [f"caustics-{name}" for name in ("glass", "inside", "mirror", "pair", "rough", "sun")] + ["crowd", "discs"])
+        self.assertEqual(led, [f"caustics-{name}" for name in ("glass", "inside", "mirror", "pair", "rough", "sun", "veil")] + ["crowd", "discs"])
         self.assertLessEqual({"lamp", "discs", "environment-sun", "media-lamp", "motion-lamp", "shadow-catcher"}, set(sampled))
         self.assertNotIn("lobe-lambertian", sampled)
         self.assertEqual(len(sampled), len(set(sampled)))
