@@ -10,7 +10,7 @@
 
 enum { THREADS_MAX = 256 };
 /* Generous for one level of bp_ref_color with what it calls, sanitizers included. */
-#define STACK_BYTES_PER_SEGMENT 1024u
+#define STACK_BYTES_PER_SEGMENT 2048u
 #define STACK_BYTES_BASE (1u << 20)
 
 typedef struct Job {

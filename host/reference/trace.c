@@ -219,7 +219,7 @@ static Sight look(const BpScene *scene, const Ray *ray, Random *random) {
     double behind = 0;
     while ((sight.meets = bp_ref_hit(scene, &rest, &sight.hit))) {
         const Hit *hit = &sight.hit;
-        const double opacity = bp_material_opacity(hit->material);
+        const double opacity = hit->material->opacity > 0 ? hit->material->opacity : 1; /* 0: not said */
         if (opacity >= 1 || random_real(random) < opacity) break;
         behind += hit->t;
         rest = (Ray){hit->point, ray->direction, hit->sphere, ray->time, false, hit->triangle, hit->capsule};

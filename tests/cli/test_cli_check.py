@@ -59,6 +59,16 @@ class Verdicts(Check):
         self.write("b.json", cli.scene(background=[0, 0, 0]))
         self.run_code(4, "check", "b.json", "--spp", "64", "--margin", "100", says=["black", "INCONCLUSIVE"])
 
+    def test_the_deepest_paths(self):
+        """The reference follows a path of 65,535 segments, of surfaces that let light on, too: its stack is large enough."""
+        for opacity in (1, 0.999999):
+            self.write("deep.json", cli.scene(materials={"m": {"type": "metal", "albedo": [1, 1, 1], "opacity": opacity}}, background=[0, 0, 0],
+                                              spheres=[{"center": [0, 0, 0], "radius": 2, "material": "m"}],
+                                              camera={"max_depth": 65535, "lookfrom": [0, 0, 0], "lookat": [0, 0, -1]}))
+            self.run_code(4, "check", "deep.json", "--width", "4", "--spp", "2", "--margin", "100", "--json", "deep-r.json", says=["black", "INCONCLUSIVE"])
+            entry, = self.report("deep-r.json")["results"]
+            self.assertGreater(entry["segments"]["reference"], 60000, opacity)
+
     def test_disagreement_comes_first(self):
         fault = self.broken_kernels()
         result = self.run_code(3, *self.WORDS, "--margin", "100", "--json", "r.json", environment=fault)

@@ -101,7 +101,7 @@ def names_an_option(text):
 
 
 # Files whose texts are command lines: the study advises some, srun has an option of its own, and so have the maps of MTL files.
-COMMANDS = {"study/configurations.c": 3, "study/text.c": 3, "cluster/comm.c": 1, "meshes/read_mtl.c": 1}
+COMMANDS = {"figure/layout.c": 2, "study/configurations.c": 3, "study/text.c": 3, "cluster/comm.c": 1, "meshes/read_mtl.c": 1}
 found = {}
 sources = [path for path in [*host.rglob("*.[ch]"), *pathlib.Path(source, "kernels").rglob("*.h")]
            if path.relative_to(source).parts[1] not in ("cli", "main.c", "write_documents.c") and path != host / "base/remedy.c"]
