@@ -53,8 +53,8 @@ import numpy as np, ballpark
 scene = ballpark.make_scene(np.random.default_rng(1).random((100, 3)), radius=0.05, width=64)
 with ballpark.Render(scene, spp=2**26) as running:
     running.step()
-    print("READY", flush=True)
     try:
+        print("READY", flush=True)
         while running.step() is None: pass
     except KeyboardInterrupt:
         assert running.picture().samples.max() > 0 and running.step() is None
