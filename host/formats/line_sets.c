@@ -106,11 +106,8 @@ static BpStatus add_set(const BpLineSet *set, const BpMaterialIndex *index, BpSc
         if (colored) BP_TRY(read_colors(set, i, scene, capsule, err));
         scene->capsule_count++;
     }
-    if (interior == 0) return BP_OK;
-    BP_TRY(bp_make_interiors(scene->capsule_count, &scene->capsule_interiors, &scene->capsule_interior_count,
-                             err));
-    for (size_t i = first; i < scene->capsule_count; i++) scene->capsule_interiors[i] = interior;
-    return BP_OK;
+    return bp_fill_interiors(interior, first, scene->capsule_count, &scene->capsule_interiors,
+                             &scene->capsule_interior_count, err);
 }
 
 /* As of spheres that a caller hands over: lines in one plane are seen from the front, unless something else

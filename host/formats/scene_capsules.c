@@ -106,9 +106,9 @@ BpStatus bp_parse_capsules(const BpNode *node, const BpMaterialIndex *index, BpS
             return bp_node_wrong(&element, "an object: { \"ends\": ..., \"radius\": ..., \"material\": ... }",
                                  err);
         BP_TRY(parse_capsule(&element, index, scene, &scene->capsules[i], err));
-        BP_TRY(bp_parse_interior(&element, scene, i, count, &scene->capsule_interiors, err));
+        BP_TRY(bp_parse_interior(&element, scene, i, count, &scene->capsule_interiors,
+                                 &scene->capsule_interior_count, err));
         scene->capsule_count = scene->listed_capsules = i + 1;
     }
-    if (scene->capsule_interiors != NULL) scene->capsule_interior_count = count;
     return BP_OK;
 }

@@ -67,11 +67,18 @@ BpStatus bp_medium_of_set(const char *interior, const char *set, const BpScene *
     return *number > 0 ? BP_OK : bp_fail(err, BP_ERR_SCENE, "%s: interior: %s", set, missing);
 }
 
+BpStatus bp_fill_interiors(uint32_t interior, size_t first, size_t end, uint32_t **interiors,
+                           size_t *interior_count, BpError *err) {
+    if (interior == 0) return BP_OK;
+    BP_TRY(bp_make_interiors(end, interiors, interior_count, err));
+    for (size_t i = first; i < end; i++) (*interiors)[i] = interior;
+    return BP_OK;
+}
+
 BpStatus bp_parse_interior(const BpNode *node, const BpScene *scene, size_t index, size_t count,
-                           uint32_t **interiors, BpError *err) {
+                           uint32_t **interiors, size_t *interior_count, BpError *err) {
     const BpNode interior = bp_node_member(node, "interior");
     if (interior.value == NULL) return BP_OK;
-    if (*interiors == NULL) *interiors = calloc(count, sizeof **interiors);
-    if (*interiors == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu interiors", count);
+    BP_TRY(bp_make_interiors(count, interiors, interior_count, err));
     return bp_parse_medium_name(&interior, scene, &(*interiors)[index], err);
 }

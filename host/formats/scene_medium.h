@@ -17,9 +17,13 @@ BpStatus bp_parse_medium_name(const BpNode *node, const BpScene *scene, uint32_t
  * NULL: 0. `set`: what messages call the set. BP_ERR_SCENE proposes the nearest name; BP_ERR_MEMORY. */
 BpStatus bp_medium_of_set(const char *interior, const char *set, const BpScene *scene, uint32_t *number,
                           BpError *err);
-/* What fills the shape `index`, a node with or without "interior", of `count`; *interiors, of all of them, is
- * allocated for the first that has one. BP_ERR_MEMORY, and errors of the document. */
+/* Puts the interior, unless it is 0, into the shapes from `first` to before `end`; *interiors, of all of
+ * them, has room for the first *interior_count. BP_ERR_MEMORY. */
+BpStatus bp_fill_interiors(uint32_t interior, size_t first, size_t end, uint32_t **interiors,
+                           size_t *interior_count, BpError *err);
+/* What fills the shape `index`, a node with or without "interior", of `count`; the same arrays.
+ * BP_ERR_MEMORY, and errors of the document. */
 BpStatus bp_parse_interior(const BpNode *node, const BpScene *scene, size_t index, size_t count,
-                           uint32_t **interiors, BpError *err);
+                           uint32_t **interiors, size_t *interior_count, BpError *err);
 
 #endif

@@ -46,14 +46,6 @@ static BpStatus read_spheres(const BpSphereSet *set, uint32_t material, bool col
     return BP_OK;
 }
 
-/* Of the spheres from `first` on. */
-static BpStatus put_interiors(uint32_t interior, size_t first, BpScene *scene, BpError *err) {
-    if (interior == 0) return BP_OK;
-    BP_TRY(bp_make_interiors(scene->sphere_count, &scene->interiors, &scene->interior_count, err));
-    for (size_t i = first; i < scene->sphere_count; i++) scene->interiors[i] = interior;
-    return BP_OK;
-}
-
 /* Room for all of them at once. */
 static BpStatus make_room(const BpShapeSets *shapes, BpScene *scene, BpError *err) {
     size_t count = scene->sphere_count, colors = scene->albedo_count;
@@ -98,7 +90,8 @@ BpStatus bp_add_sphere_sets(const BpMaterialIndex *index, const BpShapeSets *sha
         BP_TRY(bp_keep_point_file(name_of(set), scene->sphere_count, NULL, scene, err));
         scene->point_files[scene->point_file_count - 1].in_memory = true;
         BP_TRY(read_spheres(set, material, colored, scene, err));
-        BP_TRY(put_interiors(interior, before, scene, err));
+        BP_TRY(bp_fill_interiors(interior, before, scene->sphere_count, &scene->interiors,
+                                 &scene->interior_count, err));
     }
     scene->has_particles = true;
     scene->flat |= is_flat(scene->spheres + first, scene->sphere_count - first);

@@ -54,10 +54,9 @@ BpStatus bp_parse_spheres(const BpNode *node, const BpMaterialIndex *index, BpSc
                                  "an object: { \"center\": ..., \"radius\": ..., \"material\": ... }", err);
         BP_TRY(parse_sphere(&element, index, &scene->spheres[i], err));
         BP_TRY(parse_motion(&element, i, count, scene, err));
-        BP_TRY(bp_parse_interior(&element, scene, i, count, &scene->interiors, err));
+        BP_TRY(bp_parse_interior(&element, scene, i, count, &scene->interiors, &scene->interior_count, err));
     }
     scene->sphere_count = count;
     if (scene->center_ends != NULL) scene->moving_count = count;
-    if (scene->interiors != NULL) scene->interior_count = count;
     return BP_OK;
 }
